@@ -1,0 +1,32 @@
+#pragma once
+/// The program's commands. Each returns the exit code and throws Error otherwise; results go to stdout, the log to stderr.
+#include "host/error.h"
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+struct RenderOptions {
+  std::string input;                 ///< scene.toml or cloud
+  std::string output;                ///< .exr; empty: the input's name in the working directory
+  std::string size;                  ///< "WxH"
+  std::optional<int> spp;
+  std::string quality = "normal";    ///< draft: a quarter of the samples, high: four times
+  std::optional<double> exposure;
+  std::string integrator = "pointgi";
+  std::string device;
+  std::optional<unsigned> seed;
+  std::vector<std::string> overrides; ///< key.path=value
+  std::string stats_file;
+  std::string trace_file;
+  std::string pixel_bounds;          ///< "x0,x1,y0,y1"
+  std::string dump_folder;
+  bool quiet = false;
+};
+
+ExitCode run_render(const RenderOptions& options);
+ExitCode run_info(const std::string& file);
+ExitCode run_devices(bool json, bool check, const std::string& device);
+
+} // namespace pointgi

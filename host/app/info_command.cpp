@@ -1,0 +1,79 @@
+#include "host/app/commands.h"
+#include "host/app/prepare.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace pointgi {
+
+namespace {
+
+void print_report(const std::string& file, const CloudReport& report) {
+  std::printf("%s\n", file.c_str());
+  std::printf("  format      %s\n", report.format.c_str());
+  std::printf("  points      %zu in the file, %zu dropped\n", report.points_in_file, report.points_dropped);
+  std::printf("  triangles   %zu\n", report.triangles);
+  std::printf("  normals     %s\n", report.normals_from.c_str());
+  std::printf("  radii       %s\n", report.radii_from.c_str());
+  std::printf("  areas       %s\n", report.areas_from.c_str());
+  std::size_t widest = 0;
+  for (const PropertyUse& p : report.properties)
+    widest = std::max(widest, p.property.size());
+  constexpr std::size_t most = 40; // a file may have thousands
+  for (std::size_t i = 0; i < std::min(most, report.properties.size()); ++i)
+    std::printf("  %s %-*s  %s\n", i == 0 ? "properties " : "           ", static_cast<int>(widest),
+                report.properties[i].property.c_str(), report.properties[i].use.c_str());
+  if (report.properties.size() > most)
+    std::printf("              and %zu more\n", report.properties.size() - most);
+  for (const std::string& warning : report.warnings)
+    std::printf("  warning     %s\n", warning.c_str());
+}
+
+/// The value that a share of the points stays below.
+float percentile(std::vector<float> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+} // namespace
+
+ExitCode run_info(const std::string& file) {
+  const bool is_scene = is_scene_file(file);
+  const Scene scene = is_scene ? load_scene(file) : load_bare_cloud(file);
+  const WorldSplats splats = load_splats(scene);
+  for (std::size_t i = 0; i < scene.clouds.size(); ++i)
+    print_report(scene.clouds[i].file, splats.reports[i]);
+  const PointCloud& cloud = splats.cloud;
+  Vector3d low = cloud.position.front(), high = low;
+  double area = 0.0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    low = low.cwiseMin(cloud.position[i]);
+    high = high.cwiseMax(cloud.position[i]);
+    area += cloud.area[i];
+  }
+  if (is_scene) {
+    std::printf("%s\n  scene       %zu clouds, %zu shapes, %zu materials, %zu lights\n", file.c_str(), scene.clouds.size(),
+                scene.shapes.size(), scene.materials.size(), scene.lights.size());
+    for (const std::string& warning : scene.warnings)
+      std::printf("  warning     %s\n", warning.c_str());
+  }
+  const Frame frame = frame_of(cloud);
+  const std::vector<Splat> placed = place_in_cube(splats, frame);
+  const StepPools pools = build_pools(placed, {});
+  std::printf("  splats      %zu\n", cloud.size());
+  std::printf("  bounds      [%.9g, %.9g, %.9g] to [%.9g, %.9g, %.9g]\n", low.x(), low.y(), low.z(), high.x(), high.y(),
+              high.z());
+  std::printf("  area        %.6g (sum of the splats' effective areas)\n", area);
+  std::printf("  spacing     %.4g (mean, square root of the mean area)\n",
+              std::sqrt(area / static_cast<double>(cloud.size())));
+  std::printf("  radius      %.4g median, %.4g at 99 %%, %.4g largest\n", percentile(cloud.radius, 0.5),
+              percentile(cloud.radius, 0.99), percentile(cloud.radius, 1.0));
+  std::printf("  octree      %zu nodes, %zu leaves, depth %u, %.2f extra splats a splat\n", pools.nodes.size(), pools.leaves,
+              pools.depth, static_cast<double>(pools.extra_splats) / static_cast<double>(cloud.size()));
+  std::printf("  memory      %.1f MiB of pools, %.0f bytes a splat\n", static_cast<double>(pools.bytes()) / 1048576.0,
+              static_cast<double>(pools.bytes()) / static_cast<double>(cloud.size()));
+  return ExitCode::done;
+}
+
+} // namespace pointgi

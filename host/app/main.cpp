@@ -1,0 +1,122 @@
+#include "host/app/commands.h"
+#include "host/app/interrupt.h"
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <omp.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace {
+
+using namespace pointgi;
+
+/// The log goes to stderr: stdout is for results.
+void set_up_log(int verbosity, bool quiet) {
+  const char* no_colour = std::getenv("NO_COLOR");
+  const bool colour = no_colour == nullptr || *no_colour == '\0';
+  auto logger = spdlog::stderr_color_mt("pointgi", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never);
+  spdlog::set_default_logger(logger);
+  spdlog::set_pattern("%^%l%$: %v");
+  spdlog::set_level(quiet ? spdlog::level::warn : verbosity > 0 ? spdlog::level::debug : spdlog::level::info);
+}
+
+int code_of(ExitCode code) { return static_cast<int>(code); }
+
+std::string environment_or(const std::string& flag, const char* variable) {
+  const char* value = std::getenv(variable);
+  return !flag.empty() || value == nullptr ? flag : value;
+}
+
+struct Common {
+  int verbosity = 0;
+  int threads = 0;
+};
+
+/// Threads of the host's loops and of a CPU device; before the first OpenCL call.
+void limit_threads(int threads) {
+  if (threads <= 0)
+    return;
+  omp_set_num_threads(threads);
+  setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Global illumination of point clouds, without meshing them."};
+  app.set_version_flag("--version", "pointgi " POINTGI_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  Common common;
+  RenderOptions render;
+  app.add_flag("-v", common.verbosity, "say more (repeat for more)");
+  app.add_flag("--quiet", render.quiet, "only warnings and results");
+
+  CLI::App* render_command = app.add_subcommand("render", "render a scene, or a bare cloud");
+  render_command->add_option("SCENE.toml|CLOUD.ply", render.input, "what to render")->required();
+  render_command->add_option("-o,--output", render.output, "the picture, OUT.exr; OUT.png is written beside it");
+  render_command->add_option("--size", render.size, "image size, WIDTHxHEIGHT");
+  render_command->add_option("--spp", render.spp, "samples a pixel");
+  render_command->add_option("--quality", render.quality, "draft (a quarter of the samples), normal, high (four times)")
+      ->check(CLI::IsMember({"draft", "normal", "high"}));
+  render_command->add_option("--exposure", render.exposure, "stops, for the PNG");
+  render_command->add_option("--integrator", render.integrator, "pointgi");
+  render_command->add_option("--device", render.device, "index, part of a name, cpu or gpu (see: pointgi devices)");
+  render_command->add_option("--threads", common.threads, "threads of the host and of a CPU device")
+      ->check(CLI::Range(1, 1024));
+  render_command->add_option("--seed", render.seed, "seed of the samples");
+  render_command->add_option("--set", render.overrides, "a value of the scene file: key.path=value")
+      ->take_all()
+      ->expected(1);
+  render_command->add_option("--stats", render.stats_file, "write figures of the run to this JSON file");
+  render_command->add_option("--trace", render.trace_file, "write the stages as a Chrome trace to this JSON file");
+  render_command->add_option("--pixelbounds", render.pixel_bounds, "render only x0,x1,y0,y1 (ends exclusive)");
+  render_command->add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
+
+  std::string info_file;
+  CLI::App* info_command = app.add_subcommand("info", "what is in a cloud or scene");
+  info_command->add_option("FILE.ply|SCENE.toml", info_file, "what to look at")->required();
+
+  bool json = false, check = false;
+  std::string checked_device;
+  CLI::App* devices_command = app.add_subcommand("devices", "the OpenCL devices");
+  devices_command->add_flag("--json", json, "as JSON");
+  devices_command->add_flag("--check", check, "compile every kernel on each");
+  devices_command->add_option("--device", checked_device, "only this one");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? code_of(ExitCode::done) : code_of(ExitCode::usage);
+  }
+  set_up_log(common.verbosity, render.quiet);
+  limit_threads(common.threads);
+  std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then a write error, reported as one
+  catch_interrupts();
+  render.device = environment_or(render.device, "POINTGI_DEVICE");
+  if (render_command->parsed())
+    return code_of(run_render(render));
+  if (info_command->parsed())
+    return code_of(run_info(info_file));
+  return code_of(run_devices(json, check, checked_device));
+}
+
+} // namespace
+
+/// The one place where errors become exit codes.
+int main(int argc, char** argv) {
+  const auto fail = [](pointgi::ExitCode code, const char* text) {
+    std::fprintf(stderr, "error: %s\n", text);
+    return static_cast<int>(code);
+  };
+  try {
+    return run(argc, argv);
+  } catch (const pointgi::Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(pointgi::ExitCode::memory, "out of memory; use a smaller cloud or a coarser spacing");
+  } catch (const std::exception& error) {
+    return fail(pointgi::ExitCode::internal, error.what());
+  }
+}

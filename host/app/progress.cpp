@@ -1,0 +1,66 @@
+#include "host/app/progress.h"
+#include <algorithm>
+#include <cstdio>
+#include <unistd.h>
+
+namespace pointgi {
+
+namespace {
+
+double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
+  return std::chrono::duration<double>(b - a).count();
+}
+
+/// A line now and then, for logs that are read later.
+constexpr double plain_interval = 5.0;
+constexpr double bar_interval = 0.1;
+constexpr int bar_width = 30;
+
+} // namespace
+
+std::string duration_text(double seconds) {
+  char text[64];
+  const long whole = static_cast<long>(seconds + 0.5);
+  if (seconds < 9.95)
+    std::snprintf(text, sizeof text, "%.1f s", seconds);
+  else if (whole < 60)
+    std::snprintf(text, sizeof text, "%ld s", whole);
+  else if (whole < 3600)
+    std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
+  else
+    std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
+  return text;
+}
+
+Progress::Progress(std::string stage, bool quiet)
+    : stage_(std::move(stage)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()), last_(start_) {}
+
+Progress::~Progress() {
+  if (drawn_ && terminal_)
+    std::fprintf(stderr, "\r\033[K"); // what follows is the result, not the bar
+}
+
+void Progress::update(double share) {
+  if (quiet_)
+    return;
+  const auto now = std::chrono::steady_clock::now();
+  if (seconds_between(last_, now) < (terminal_ ? bar_interval : plain_interval))
+    return;
+  last_ = now;
+  drawn_ = true;
+  const double elapsed = seconds_between(start_, now), done = std::clamp(share, 1e-6, 1.0);
+  const std::string times =
+      duration_text(elapsed) + " elapsed, " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
+  const int percent = static_cast<int>(100.0 * done);
+  if (!terminal_) {
+    std::fprintf(stderr, "%s: %d %%, %s\n", stage_.c_str(), percent, times.c_str());
+    return;
+  }
+  const int filled = static_cast<int>(bar_width * done);
+  std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%  %s", stage_.c_str(), std::string(filled, '#').c_str(),
+               std::string(bar_width - filled, ' ').c_str(), percent, times.c_str());
+  std::fflush(stderr);
+}
+
+} // namespace pointgi

@@ -1,0 +1,30 @@
+#pragma once
+#include <chrono>
+#include <string>
+
+namespace pointgi {
+
+/// Progress of one stage on stderr: a bar with elapsed and remaining time on a terminal, a plain line now and then
+/// elsewhere, nothing when quiet.
+class Progress {
+public:
+  Progress(std::string stage, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// `share` done, 0..1.
+  void update(double share);
+
+private:
+  std::string stage_;
+  bool quiet_;
+  bool terminal_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_, last_;
+};
+
+/// "0.4 s", "12 s", "3 min 05 s", "2 h 10 min".
+std::string duration_text(double seconds);
+
+} // namespace pointgi

@@ -1,0 +1,227 @@
+#include "host/app/commands.h"
+#include "host/app/default_view.h"
+#include "host/app/interrupt.h"
+#include "host/app/prepare.h"
+#include "host/app/progress.h"
+#include "host/app/stats.h"
+#include "host/cl/binary_cache.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <spdlog/spdlog.h>
+
+namespace pointgi {
+
+namespace {
+
+/// Exactly `count` whole numbers separated by `separator`, or an Error(usage) that shows how it is written.
+std::vector<int> whole_numbers(const std::string& text, char separator, std::size_t count, const std::string& form) {
+  std::vector<int> numbers;
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t end = std::min(text.find(separator, at), text.size());
+    const std::string part = text.substr(at, end - at);
+    if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos)
+      break;
+    numbers.push_back(std::stoi(part));
+    at = end + 1;
+  }
+  if (numbers.size() != count || at <= text.size())
+    throw Error(ExitCode::usage, form + ", found \"" + text + "\"");
+  return numbers;
+}
+
+/// Flags win over the scene file; they become overrides, so that one place checks both.
+std::vector<std::string> overrides_of(const RenderOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.size.empty()) {
+    const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
+    overrides.push_back("render.size=[" + std::to_string(size[0]) + ", " + std::to_string(size[1]) + "]");
+  }
+  if (options.spp)
+    overrides.push_back("render.spp=" + std::to_string(*options.spp));
+  if (options.seed)
+    overrides.push_back("render.seed=" + std::to_string(*options.seed));
+  if (options.exposure)
+    overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
+  return overrides;
+}
+
+PixelWindow window_of(const RenderOptions& options, const RenderSettings& render) {
+  if (options.pixel_bounds.empty())
+    return {0, render.width, 0, render.height};
+  const std::string form = "--pixelbounds: expected x0,x1,y0,y1 with 0 <= x0 < x1 <= " + std::to_string(render.width) +
+                           " and 0 <= y0 < y1 <= " + std::to_string(render.height);
+  const auto b = whole_numbers(options.pixel_bounds, ',', 4, form);
+  if (b[0] >= b[1] || b[1] > render.width || b[2] >= b[3] || b[3] > render.height)
+    throw Error(ExitCode::usage, form + ", found \"" + options.pixel_bounds + "\"");
+  return {b[0], b[1], b[2], b[3]};
+}
+
+std::string output_of(const RenderOptions& options) {
+  return options.output.empty() ? std::filesystem::path(options.input).stem().string() + ".exr" : options.output;
+}
+
+void log_reports(const Scene& scene, const WorldSplats& splats) {
+  for (const std::string& warning : scene.warnings)
+    spdlog::warn("{}", warning);
+  for (std::size_t i = 0; i < splats.reports.size(); ++i) {
+    const CloudReport& r = splats.reports[i];
+    spdlog::info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
+                 r.normals_from, r.radii_from);
+    for (const std::string& warning : r.warnings)
+      spdlog::warn("{}: {}", scene.clouds[i].file, warning);
+  }
+}
+
+/// The stages that later steps of light transport will fill; said so, not left out (method.md §7).
+void skip_indirect_stages(const Scene& scene, StageLog& stages) {
+  const bool lit = !scene.lights.empty() || scene.environment.maxCoeff() > 0.0 ||
+                   std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const MaterialSettings& m) { return m.emission.maxCoeff() > 0.0; });
+  const std::string reason = lit ? "this version renders direct light only" : "the scene has no light and no emission";
+  stages.skip("vmap", reason);
+  stages.skip("fmm", reason);
+  stages.skip("photon", "no specular material");
+  if (scene.radiosity.place)
+    spdlog::warn("{}: [radiosity] has no effect: this version renders direct light only", scene.radiosity.place->text());
+  if (scene.caustics.place)
+    spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
+}
+
+PictureAttributes attributes_of(const Scene& scene, const RenderOptions& options, const Session& session,
+                                std::uint64_t scene_hash) {
+  PictureAttributes attributes;
+  char hash[17];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(scene_hash));
+  attributes.text["software"] = "pointgi " POINTGI_VERSION;
+  attributes.text["pointgi/device"] = session.info().name + " (" + session.info().platform + ")";
+  attributes.text["pointgi/scene_hash"] = hash;
+  attributes.text["pointgi/quality"] = options.quality;
+  attributes.number["samplesPerPixel"] = scene.render.spp;
+  attributes.world_to_camera = world_to_camera(scene);
+  attributes.world_to_ndc = world_to_ndc(scene);
+  return attributes;
+}
+
+/// What the picture depends on: splats, lights, camera and samples, as the device reads them.
+std::uint64_t hash_of(const StepPools& pools, const DeviceLighting& lighting) {
+  const auto bytes = [](const auto& v) {
+    return std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
+  };
+  std::uint64_t hash = fnv1a(bytes(pools.points));
+  hash = fnv1a(bytes(lighting.delta), hash);
+  hash = fnv1a(bytes(lighting.materials), hash);
+  return fnv1a(std::string(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
+}
+
+Scene scene_of(const RenderOptions& options) {
+  return is_scene_file(options.input) ? load_scene(options.input, overrides_of(options))
+                                      : load_bare_cloud(options.input, overrides_of(options));
+}
+
+/// What the user left open is chosen so that the picture is worth looking at.
+void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
+  if (!scene.camera.chosen)
+    spdlog::info("{}", choose_camera(scene, splats));
+  if (bare && scene.lights.empty() && scene.environment.isZero())
+    choose_lights(scene);
+}
+
+void stop_if_asked() {
+  if (interrupted())
+    throw Error(ExitCode::interrupted, "interrupted before the first pixel; nothing was written");
+}
+
+} // namespace
+
+ExitCode run_render(const RenderOptions& options) {
+  if (options.integrator != "pointgi")
+    throw Error(ExitCode::usage, "--integrator " + options.integrator +
+                                     ": this version has the integrator \"pointgi\" only");
+  StageLog stages;
+  const auto close_to_1 = [](double factor, int spp) { return std::max(1, static_cast<int>(std::lround(spp * factor))); };
+
+  stages.start("scene");
+  Scene scene = scene_of(options);
+  if (!options.spp && options.quality != "normal")
+    scene.render.spp = close_to_1(options.quality == "draft" ? 0.25 : 4.0, scene.render.spp);
+  refuse_unsupported(scene);
+  const PixelWindow window = window_of(options, scene.render);
+  stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
+
+  Session session(choose_device(options.device));
+  session.dump_kernels_to(options.dump_folder);
+  spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
+
+  stages.start("cloud");
+  WorldSplats splats = load_splats(scene);
+  choose_view(scene, splats, !is_scene_file(options.input));
+  log_reports(scene, splats);
+  const Frame frame = frame_of(splats.cloud);
+  std::vector<Splat> placed = place_in_cube(splats, frame);
+  splats.cloud = {};
+  stages.finish(placed.size(), "points");
+  stop_if_asked();
+
+  stages.start("octree");
+  const StepPools pools = build_pools(placed, {});
+  placed = {};
+  std::vector<std::uint32_t> ids(pools.source.size());
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    ids[k] = splats.source[pools.source[k]];
+  stages.finish(pools.nodes.size(), "nodes");
+  stop_if_asked();
+  skip_indirect_stages(scene, stages);
+
+  const TraversalVariant variant;
+  const DevicePools on_device = upload_pools(session, pools, variant.storage);
+  const DeviceLighting lighting = device_lighting(scene, frame, pools.points);
+  PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window, film_channels(),
+                       attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
+  stages.start("render");
+  Stats stats;
+  {
+    Progress progress("render", options.quiet);
+    stats.render = render(session, on_device, {window, lighting, frame, ids, variant},
+                          [&](const Band& band) { writer.write(band); },
+                          [&](double share) { progress.update(share); }, interrupted);
+  }
+  stages.finish(stats.render.rays, "rays", stats.render.device_seconds);
+  const double render_seconds = stages.records().back().seconds;
+  stages.start("image");
+  writer.finish(render_seconds);
+  stages.finish(static_cast<std::uint64_t>(window.x1 - window.x0) * (window.y1 - window.y0), "pixels");
+
+  const double back_share = stats.render.eye_rays_on_splats > 0
+                                ? static_cast<double>(stats.render.eye_rays_on_back_faces) /
+                                      static_cast<double>(stats.render.eye_rays_on_splats)
+                                : 0.0;
+  if (back_share > 0.05)
+    spdlog::warn("{:.0f} % of the eye rays that hit a splat met its back, which is black; if the normals are inverted, "
+                 "normals = \"flip\" on the [[cloud]] mends them",
+                 100.0 * back_share);
+  if (!options.stats_file.empty()) {
+    stats.command = "render";
+    stats.scene = &scene;
+    stats.points = pools.points.size();
+    stats.pools = &pools;
+    stats.session = &session;
+    stats.seconds = stages.seconds();
+    write_stats(options.stats_file, stats, stages);
+  }
+  if (!options.trace_file.empty())
+    write_text(options.trace_file, stages.chrome_trace());
+  std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());
+  if (stats.render.interrupted) {
+    spdlog::warn("interrupted: the picture holds its first {} of {} rows", stats.render.rows_done, window.y1 - window.y0);
+    return ExitCode::interrupted;
+  }
+  spdlog::info("{} points, {:.1f} million rays, {} ({} on the device)", pools.points.size(),
+               1e-6 * static_cast<double>(stats.render.rays), duration_text(stages.seconds()),
+               duration_text(stats.render.device_seconds));
+  return ExitCode::done;
+}
+
+} // namespace pointgi

@@ -1,0 +1,41 @@
+#pragma once
+/// The stages of a run: which exist for this scene, what they did, how long they took. Names are those of the folders.
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+struct StageRecord {
+  std::string name;
+  bool ran = false;
+  std::string reason; ///< why it did not run; empty when it did
+  double start = 0.0; ///< seconds since the log began
+  double seconds = 0.0;
+  double device_seconds = 0.0;
+  std::uint64_t items = 0;
+  std::string unit; ///< of items: "points", "nodes", "rays", "pixels"
+};
+
+class StageLog {
+public:
+  StageLog() : begin_(std::chrono::steady_clock::now()) {}
+
+  /// Opens a stage; the one before it is closed.
+  StageRecord& start(const std::string& name);
+  void finish(std::uint64_t items, const std::string& unit, double device_seconds = 0.0);
+  void skip(const std::string& name, const std::string& reason);
+
+  const std::vector<StageRecord>& records() const { return records_; }
+  double seconds() const; ///< since the log began
+
+  /// The stages as a Chrome trace (chrome://tracing, Perfetto).
+  std::string chrome_trace() const;
+
+private:
+  std::chrono::steady_clock::time_point begin_;
+  std::vector<StageRecord> records_;
+};
+
+} // namespace pointgi

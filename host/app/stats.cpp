@@ -1,0 +1,72 @@
+#include "host/app/stats.h"
+#include "host/atomic_file.h"
+#include "host/error.h"
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace pointgi {
+
+std::uint64_t host_peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024u;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  AtomicFile file(path);
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = ::write(file.fd(), text.data() + done, text.size() - done);
+    if (written < 0)
+      throw Error(ExitCode::output, path + ": cannot write: " + std::strerror(errno) +
+                                        "; make room, or choose another place");
+    done += static_cast<std::size_t>(written);
+  }
+  file.commit();
+}
+
+void write_stats(const std::string& path, const Stats& stats, const StageLog& stages) {
+  using nlohmann::json;
+  const DeviceInfo& info = stats.session->info();
+  json out;
+  out["version"] = POINTGI_VERSION;
+  out["command"] = stats.command;
+  out["device"] = {{"name", info.name}, {"vendor", info.vendor}, {"driver", info.driver}, {"opencl", info.opencl}};
+  out["scene"] = {{"points", stats.points},
+                  {"materials", stats.scene->materials.size()},
+                  {"lights", stats.scene->lights.size()}};
+  out["octree"] = {{"nodes", stats.pools->nodes.size()},
+                   {"leaves", stats.pools->leaves},
+                   {"depth", stats.pools->depth},
+                   {"extra_splats", stats.pools->extra_splats},
+                   {"bytes", stats.pools->bytes()}};
+  const RenderTotals& r = stats.render;
+  out["render"] = {{"rays", r.rays},
+                   {"eye_rays", r.eye_rays},
+                   {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
+                   {"back_face_share", r.eye_rays_on_splats > 0 ? static_cast<double>(r.eye_rays_on_back_faces) /
+                                                                      static_cast<double>(r.eye_rays_on_splats)
+                                                                : 0.0},
+                   {"interrupted", r.interrupted}};
+  out["stages"] = json::array();
+  for (const StageRecord& s : stages.records())
+    out["stages"].push_back({{"name", s.name},
+                             {"ran", s.ran},
+                             {"reason", s.reason},
+                             {"seconds", s.seconds},
+                             {"device_seconds", s.device_seconds},
+                             {"items", s.items},
+                             {"unit", s.unit}});
+  out["kernels"] = json::object();
+  for (const auto& [name, time] : stats.session->kernel_times())
+    out["kernels"][name] = {{"launches", time.launches}, {"seconds", time.seconds}};
+  out["programs"] = {{"compiled", stats.session->programs_compiled()},
+                     {"from_cache", stats.session->programs_from_cache()}};
+  out["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", stats.session->peak_bytes()}};
+  out["seconds"] = stats.seconds;
+  write_text(path, out.dump(1) + "\n");
+}
+
+} // namespace pointgi

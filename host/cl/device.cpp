@@ -1,0 +1,107 @@
+#include "host/cl/device.h"
+#include "host/error.h"
+#include <algorithm>
+#include <cctype>
+
+namespace pointgi {
+
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Drivers pad their strings with blanks and sometimes a NUL.
+std::string trimmed(std::string text) {
+  text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
+  const auto first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+DeviceInfo describe(const cl::Device& device, const cl::Platform& platform) {
+  DeviceInfo info;
+  info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+  info.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
+  info.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+  info.opencl = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+  info.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+  const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+  info.is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+  info.is_gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
+  info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  info.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.max_allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  info.local_memory_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  info.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+  info.images = device.getInfo<CL_DEVICE_IMAGE_SUPPORT>() != CL_FALSE;
+  if (info.images) {
+    info.image_buffer_texels = device.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
+    info.image2d_width = device.getInfo<CL_DEVICE_IMAGE2D_MAX_WIDTH>();
+    info.image2d_height = device.getInfo<CL_DEVICE_IMAGE2D_MAX_HEIGHT>();
+  }
+  return info;
+}
+
+std::string listing(const std::vector<Device>& devices) {
+  std::string text;
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    text += "\n  " + std::to_string(i) + "  " + devices[i].info.name + " (" + devices[i].info.platform + ")";
+  return text;
+}
+
+} // namespace
+
+std::vector<Device> list_devices() {
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return {}; // the loader reports "no platform" as an error
+  }
+  std::vector<Device> result;
+  for (const cl::Platform& platform : platforms) {
+    std::vector<cl::Device> devices;
+    try {
+      const_cast<cl::Platform&>(platform).getDevices(CL_DEVICE_TYPE_ALL, &devices);
+    } catch (const cl::Error&) {
+      continue; // a platform without devices
+    }
+    for (const cl::Device& device : devices)
+      result.push_back({device, describe(device, platform)});
+  }
+  return result;
+}
+
+Device choose_device(const std::string& selector) {
+  const std::vector<Device> devices = list_devices();
+  if (devices.empty())
+    throw Error(ExitCode::device, "no OpenCL device was found; install your vendor's OpenCL driver, or "
+                                  "pocl-opencl-icd to run on the CPU");
+  const auto first = [&](auto&& wanted) -> const Device* {
+    const auto at = std::find_if(devices.begin(), devices.end(), wanted);
+    return at == devices.end() ? nullptr : &*at;
+  };
+  const auto is_gpu = [](const Device& d) { return d.info.is_gpu; };
+  const auto is_cpu = [](const Device& d) { return d.info.is_cpu; };
+  const Device* chosen = nullptr;
+  if (selector.empty()) {
+    chosen = first(is_gpu);
+    chosen = chosen != nullptr ? chosen : first(is_cpu);
+    chosen = chosen != nullptr ? chosen : &devices.front();
+  } else if (lower(selector) == "gpu") {
+    chosen = first(is_gpu);
+  } else if (lower(selector) == "cpu") {
+    chosen = first(is_cpu);
+  } else if (std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); })) {
+    const std::size_t index = selector.size() < 9 ? std::stoul(selector) : devices.size();
+    chosen = index < devices.size() ? &devices[index] : nullptr;
+  } else {
+    chosen = first([&](const Device& d) { return lower(d.info.name).find(lower(selector)) != std::string::npos; });
+  }
+  if (chosen == nullptr)
+    throw Error(ExitCode::device, "device '" + selector + "' was not found; there is:" + listing(devices));
+  return *chosen;
+}
+
+} // namespace pointgi

@@ -1,0 +1,107 @@
+#include "host/cl/binary_cache.h"
+#include "host/cl/kernel_source.h"
+#include "host/cl/session.h"
+#include "host/error.h"
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace pointgi {
+
+namespace {
+
+std::string build_log(const cl::Program& program, const cl::Device& device) {
+  try {
+    std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    log.erase(std::find(log.begin(), log.end(), '\0'), log.end());
+    return log;
+  } catch (const cl::Error&) {
+    return "(the driver gives no build log)";
+  }
+}
+
+} // namespace
+
+const cl::Program& Session::program(const std::string& file, const std::string& options) {
+  const std::string name = file + "\n" + options;
+  const auto found = programs_.find(name);
+  return found != programs_.end() ? found->second : programs_.emplace(name, build(file, options)).first->second;
+}
+
+cl::Program Session::build(const std::string& file, const std::string& options) {
+  const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options);
+  const std::string source = kernel_source(file);
+  dump(file, all_options, source);
+  const std::string key = source + "\n" + all_options + "\n" + info_.platform + "\n" + info_.name + "\n" + info_.driver +
+                          "\n" + info_.opencl;
+  const std::vector<cl::Device> devices{device_};
+  if (const auto binary = load_binary(key)) {
+    try {
+      cl::Program program(context_, devices, cl::Program::Binaries{*binary});
+      program.build(devices, all_options.c_str());
+      ++from_cache_;
+      return program;
+    } catch (const cl::Error&) {
+      // The driver refuses what another build of it wrote: compile anew.
+    }
+  }
+  cl::Program program;
+  try {
+    program = cl::Program(context_, source);
+    program.build(devices, all_options.c_str());
+  } catch (const cl::Error& error) {
+    throw Error(ExitCode::device, "kernels/" + file + " did not compile: " + cl_error_name(error.err()) + "\ndevice:  " +
+                                      info_.name + " (" + info_.platform + ")\ndriver:  " + info_.driver + "\noptions: " +
+                                      all_options + "\n" + build_log(program, device_));
+  }
+  ++compiled_;
+  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+  if (!binaries.empty() && !binaries.front().empty())
+    store_binary(key, binaries.front());
+  return program;
+}
+
+void Session::dump(const std::string& file, const std::string& options, const std::string& source) const {
+  if (dump_folder_.empty())
+    return;
+  std::error_code ignored;
+  std::filesystem::create_directories(dump_folder_, ignored);
+  std::string name = file;
+  std::replace(name.begin(), name.end(), '/', '_');
+  std::ofstream out(dump_folder_ + "/" + name);
+  out << "/* clBuildProgram options: " << options << " */\n" << source;
+  if (!out)
+    throw Error(ExitCode::output, dump_folder_ + ": cannot write " + name + "; choose a writable --dump-kernels folder");
+}
+
+std::string cl_error_name(int code) {
+  struct Name {
+    int code;
+    const char* name;
+  };
+  static constexpr Name names[] = {
+      {CL_DEVICE_NOT_FOUND, "CL_DEVICE_NOT_FOUND"},
+      {CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE"},
+      {CL_COMPILER_NOT_AVAILABLE, "CL_COMPILER_NOT_AVAILABLE"},
+      {CL_MEM_OBJECT_ALLOCATION_FAILURE, "CL_MEM_OBJECT_ALLOCATION_FAILURE"},
+      {CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES"},
+      {CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY"},
+      {CL_IMAGE_FORMAT_NOT_SUPPORTED, "CL_IMAGE_FORMAT_NOT_SUPPORTED"},
+      {CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE"},
+      {CL_INVALID_VALUE, "CL_INVALID_VALUE"},
+      {CL_INVALID_BINARY, "CL_INVALID_BINARY"},
+      {CL_INVALID_BUILD_OPTIONS, "CL_INVALID_BUILD_OPTIONS"},
+      {CL_INVALID_KERNEL_NAME, "CL_INVALID_KERNEL_NAME"},
+      {CL_INVALID_ARG_SIZE, "CL_INVALID_ARG_SIZE"},
+      {CL_INVALID_KERNEL_ARGS, "CL_INVALID_KERNEL_ARGS"},
+      {CL_INVALID_WORK_GROUP_SIZE, "CL_INVALID_WORK_GROUP_SIZE"},
+      {CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE"},
+      {CL_INVALID_IMAGE_SIZE, "CL_INVALID_IMAGE_SIZE"},
+  };
+  for (const Name& entry : names)
+    if (entry.code == code)
+      return std::string(entry.name) + " (" + std::to_string(code) + ")";
+  return "OpenCL error " + std::to_string(code);
+}
+
+} // namespace pointgi

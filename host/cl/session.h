@@ -1,0 +1,132 @@
+#pragma once
+/// One device at work: context, queue, programs, buffers, launches. The only route to the OpenCL API.
+#include "host/cl/device.h"
+#include <cstring>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+/// Device seconds and launches of one kernel since the session began.
+struct KernelTime {
+  std::size_t launches = 0;
+  double seconds = 0.0;
+};
+
+/// Typed device memory of a fixed number of elements; frees itself.
+template <typename T>
+struct Buffer {
+  cl::Buffer handle;
+  std::size_t size = 0;
+};
+
+/// What a launch needs besides the kernel's arguments. Sizes are in work-items; local must divide global.
+struct LaunchShape {
+  std::size_t global[2] = {1, 1};
+  std::size_t local[2] = {1, 1};
+
+  /// 1-D: `count` work-items, padded to whole groups of `group`.
+  static LaunchShape line(std::size_t count, std::size_t group = 64);
+};
+
+class Session {
+public:
+  /// Throws Error(device) when the device cannot be opened.
+  explicit Session(const Device& device);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+
+  /// The program of kernels/<file> built with `options` ("-D NAME=VALUE ..."); from memory, from the cache folder, or
+  /// compiled. Throws Error(device) with device, driver, options and the compiler's log, whose lines name our files.
+  const cl::Program& program(const std::string& file, const std::string& options);
+
+  /// A kernel of it. Throws Error(internal) for an unknown name.
+  cl::Kernel kernel(const std::string& file, const std::string& options, const std::string& name);
+
+  template <typename T>
+  Buffer<T> allocate(std::size_t size, cl_mem_flags flags = CL_MEM_READ_WRITE) {
+    return {allocate_bytes(size * sizeof(T), flags), size};
+  }
+  template <typename T>
+  Buffer<T> upload(const T* data, std::size_t size) {
+    Buffer<T> buffer = allocate<T>(size, CL_MEM_READ_ONLY);
+    write_bytes(buffer.handle, data, size * sizeof(T));
+    return buffer;
+  }
+  template <typename T>
+  Buffer<T> upload(const std::vector<T>& data) {
+    return upload(data.data(), data.size());
+  }
+  template <typename T>
+  std::vector<T> download(const Buffer<T>& buffer, std::size_t count) {
+    std::vector<T> data(count);
+    read_bytes(buffer.handle, data.data(), count * sizeof(T));
+    return data;
+  }
+
+  /// `texels` RGBA texels of four 32-bit words as image1d_buffer, or as image2d with rows of 2^width_log2 texels.
+  cl::Memory upload_image1d(const void* texels, std::size_t count, bool is_float);
+  cl::Memory upload_image2d(const void* texels, std::size_t count, bool is_float, unsigned width_log2);
+
+  /// Runs the kernel with these arguments and waits; returns the device's seconds, which also go to kernel_times().
+  /// Checks work-group, local memory and argument count before the device sees them. Throws Error(device), or
+  /// Error(memory) when the device has too little.
+  template <typename... Args>
+  double launch(cl::Kernel& kernel, const LaunchShape& shape, const Args&... args) {
+    cl_uint index = 0;
+    (set_argument(kernel, index++, args), ...);
+    return run(kernel, shape, index);
+  }
+
+  const std::map<std::string, KernelTime>& kernel_times() const { return times_; }
+  std::size_t programs_compiled() const { return compiled_; }
+  std::size_t programs_from_cache() const { return from_cache_; }
+  std::uint64_t peak_bytes() const { return bytes_->peak; }
+
+  /// Writes every program built from now on, as the compiler sees it, and its options to this folder (--dump-kernels).
+  void dump_kernels_to(const std::string& folder) { dump_folder_ = folder; }
+
+private:
+  struct Bytes {
+    std::uint64_t now = 0;
+    std::uint64_t peak = 0;
+  };
+
+  cl::Buffer allocate_bytes(std::size_t bytes, cl_mem_flags flags);
+  void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes);
+  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes);
+  cl::Program build(const std::string& file, const std::string& options);
+  void dump(const std::string& file, const std::string& options, const std::string& source) const;
+  void account(const cl::Memory& memory, std::uint64_t bytes);
+  double run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments);
+
+  template <typename T>
+  static void set_argument(cl::Kernel& kernel, cl_uint index, const T& value) {
+    kernel.setArg(index, value);
+  }
+  template <typename T>
+  static void set_argument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& value) {
+    kernel.setArg(index, value.handle);
+  }
+
+  DeviceInfo info_;
+  cl::Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  std::map<std::string, cl::Program> programs_;
+  std::map<std::string, KernelTime> times_;
+  std::shared_ptr<Bytes> bytes_ = std::make_shared<Bytes>();
+  std::size_t compiled_ = 0;
+  std::size_t from_cache_ = 0;
+  std::string dump_folder_;
+};
+
+/// The text of an OpenCL error code: "CL_OUT_OF_RESOURCES (-5)".
+std::string cl_error_name(int code);
+
+} // namespace pointgi

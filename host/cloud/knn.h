@@ -1,0 +1,70 @@
+#pragma once
+/// The distinct positions of a cloud, in spatial order, and the nearest neighbours among them.
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace pointgi {
+
+struct Neighbour {
+  std::uint32_t site;
+  float distance2; ///< squared, local units
+};
+
+/// A "site" is a position that one or more points have. Sites are numbered along a Morton curve, so that loops over
+/// them touch memory in order and ranges of them are compact. Points that share a site are handed out together: a
+/// kd-tree over 1e5 equal positions would search them all for every query.
+///
+/// Sites live in local units: moved to the median of the points and divided by a power of two near their spread, both
+/// exact in double. That keeps float distances precise for map coordinates of 1e6 and squares in range for any scale;
+/// the median, unlike the bounding box, is not moved by an outlier. Points nearer to one another than the rounding of
+/// float there (6e-8 of their distance to the median) count as coincident.
+class Sites {
+public:
+  /// `positions` must be finite and not empty. Throws Error(memory) for more than 2^31 - 1 of them.
+  explicit Sites(const std::vector<Eigen::Vector3d>& positions);
+  ~Sites();
+  Sites(const Sites&) = delete;
+  Sites& operator=(const Sites&) = delete;
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(position_.size()); }
+  /// World length of one local unit, a power of two.
+  double unit() const { return unit_; }
+  /// Local units.
+  const Eigen::Vector3d& position(std::uint32_t site) const { return position_[site]; }
+  Eigen::Vector3d to_local(const Eigen::Vector3d& world) const;
+
+  /// The points at a site, ascending.
+  struct Points {
+    const std::uint32_t* first;
+    const std::uint32_t* last;
+    const std::uint32_t* begin() const { return first; }
+    const std::uint32_t* end() const { return last; }
+    std::size_t size() const { return static_cast<std::size_t>(last - first); }
+  };
+  Points points(std::uint32_t site) const {
+    return {point_.data() + first_point_[site], point_.data() + first_point_[site + 1]};
+  }
+
+  /// The k nearest other sites, nearest first, into `out` (room for k). Returns how many there were: min(k, size() -
+  /// 1). Where several are equally far, which of them is last depends on the sites alone: not on threads, not on the
+  /// call.
+  unsigned nearest(std::uint32_t site, unsigned k, Neighbour* out) const;
+  /// The same around any position in local units, sites at that very position included.
+  unsigned nearest_to(const Eigen::Vector3d& local, unsigned k, Neighbour* out) const;
+
+private:
+  struct Tree;
+  void choose_frame(const std::vector<Eigen::Vector3d>& positions);
+  void sort_points(const std::vector<Eigen::Vector3d>& positions);
+
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  double unit_ = 1.0;
+  std::vector<Eigen::Vector3d> position_;
+  std::vector<std::uint32_t> point_;       ///< points by site
+  std::vector<std::uint32_t> first_point_; ///< site -> index into point_; one more than there are sites
+  std::unique_ptr<Tree> tree_;
+};
+
+} // namespace pointgi

@@ -1,0 +1,51 @@
+#pragma once
+/// The header of a PLY file: what the body holds and where it begins. Nothing is allocated by its counts.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
+const char* name_of(PlyFormat format);
+
+enum class PlyType { i8, u8, i16, u16, i32, u32, f32, f64 };
+/// Bytes of one value in a binary body.
+std::size_t size_of(PlyType type);
+/// The older of the two names: "uchar", "float" ...
+const char* name_of(PlyType type);
+inline bool is_float(PlyType type) {
+  return type == PlyType::f32 || type == PlyType::f64;
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::f32;
+  bool is_list = false;
+  PlyType count_type = PlyType::u8; ///< of a list: never a float
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::size_t line = 0; ///< of its declaration
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements; ///< in file order; names differ
+  std::size_t body_offset = 0;      ///< the byte after the one line end of end_header
+  std::size_t body_line = 0;        ///< number of the line that begins there
+};
+
+/// Reads the header from the first `size` bytes at `data`. Lines end in LF, CRLF or CR, as the first one does.
+/// Throws Error(input): "<file>: line N: what was expected, what was found".
+PlyHeader parse_ply_header(const char* data, std::size_t size, const std::string& file);
+
+/// Throws Error(input) when the elements cannot fit into the bytes after the header, whatever these hold: a record
+/// takes at least the sizes of its scalars and list counts (binary) or two bytes a value (ascii: a digit, a blank).
+void check_ply_counts(const PlyHeader& header, std::size_t file_size, const std::string& file);
+
+} // namespace pointgi

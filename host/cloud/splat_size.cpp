@@ -1,0 +1,290 @@
+#include "host/cloud/splat_size.h"
+#include "host/cloud/cell_polygon.h"
+#include "host/cloud/parallel.h"
+#include "host/cloud/unfold.h"
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+namespace pointgi {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr unsigned spacing_neighbours = 6;
+constexpr double isolated_factor = 8.0; // spacing over that of the neighbours; a 16-fold density step gives 4 to 6
+constexpr unsigned isolated_neighbours = 12;
+constexpr double opposite_cosine = -0.3;
+
+// A cell is exact when no neighbour left out could be nearer than twice its farthest corner. Where 20 do not suffice,
+// more are fetched; 160 see across a density step of 16 and tell it from a boundary.
+constexpr std::array<unsigned, 3> neighbour_stages = {20, 56, 160};
+constexpr double longest_reach = 3.0; // of a cell on its open side, in spacings; radius <= 3.6 spacings follows
+constexpr double widest_gap = 125.0 / 180.0 * pi; // between neighbours; wider and the surface ends there
+constexpr unsigned alike_candidates = 8;          // points looked at, of those that share a site
+
+float spacing_of(const Neighbour* near, unsigned count) {
+  // In the plane count = density pi d²; four neighbours of a row of five, or two points, still give their distance.
+  const unsigned m = std::min(count, spacing_neighbours);
+  return std::sqrt(near[m - 1].distance2 * static_cast<float>(pi / spacing_neighbours));
+}
+
+/// Median of the neighbours' own spacings (the lower one).
+float neighbours_spacing(const Sites& sites, std::uint32_t site, const std::vector<float>& spacing) {
+  std::array<Neighbour, isolated_neighbours> near;
+  std::array<float, isolated_neighbours> values;
+  const unsigned count = sites.nearest(site, isolated_neighbours, near.data());
+  for (unsigned j = 0; j < count; ++j)
+    values[j] = spacing[near[j].site];
+  std::nth_element(values.begin(), values.begin() + (count - 1) / 2, values.begin() + count);
+  return values[(count - 1) / 2];
+}
+
+void rein_in_isolated(const Sites& sites, std::vector<float>& spacing) {
+  std::vector<float> sorted = spacing;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const float suspicious = *middle * static_cast<float>(isolated_factor);
+  const std::vector<float> own = spacing;
+  parallel_ranges(sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      if (own[s] <= suspicious) continue;
+      const float usual = neighbours_spacing(sites, static_cast<std::uint32_t>(s), own);
+      if (own[s] > static_cast<float>(isolated_factor) * usual) spacing[s] = usual;
+    }
+  });
+}
+
+struct Candidate {
+  Eigen::Vector2d offset;
+  float spacing;
+};
+
+/// Makes the cells of one range of sites; holds the scratch space of a thread.
+class CellMaker {
+public:
+  CellMaker(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const std::vector<float>& spacing,
+            bool faces_agree)
+      : sites_(sites), normals_(normals), spacing_(spacing), faces_agree_(faces_agree) {}
+
+  struct Cell {
+    double area, reach; ///< local units
+    bool capped;
+  };
+
+  void go_to(std::uint32_t site) {
+    site_ = site;
+    found_ = 0;
+  }
+
+  Cell cell(const Eigen::Vector3f& normal) {
+    const TangentFrame frame(normal.cast<double>());
+    for (std::size_t stage = 0;; ++stage) {
+      const bool last = stage + 1 == neighbour_stages.size() || sites_.size() - 1 <= neighbour_stages[stage];
+      const unsigned count = fetch(neighbour_stages[stage]);
+      lay_flat(frame, count);
+      if (count > 0) {
+        const double known = std::sqrt(static_cast<double>(near_[count - 1].distance2));
+        CellPolygon polygon(known);
+        for (unsigned j = 0; j < candidates_; ++j)
+          polygon.cut(candidate_[j].offset);
+        const double reach = std::sqrt(polygon.reach2());
+        if (!polygon.open() && 2.0 * reach <= known) return {polygon.area(), reach, false};
+      }
+      if (last) return bounded_cell(count);
+    }
+  }
+
+private:
+  /// The first `count` neighbours of the site, fetched once for all points there.
+  unsigned fetch(unsigned count) {
+    if (found_ < std::min(count, sites_.size() - 1)) found_ = sites_.nearest(site_, count, near_.data());
+    return std::min(count, found_);
+  }
+
+  /// Of the points at a neighbouring site the one that faces most alike: at a shared edge, the one on this side of it.
+  Eigen::Vector3d normal_at(std::uint32_t site, const Eigen::Vector3d& like) const {
+    const Sites::Points points = sites_.points(site);
+    Eigen::Vector3d best = normals_[*points.begin()].cast<double>();
+    double alike = agreement(best, like);
+    for (std::size_t p = 1; p < std::min<std::size_t>(points.size(), alike_candidates); ++p) {
+      const Eigen::Vector3d other = normals_[points.first[p]].cast<double>();
+      if (agreement(other, like) <= alike) continue;
+      best = other;
+      alike = agreement(other, like);
+    }
+    return faces_agree_ || best.dot(like) >= 0 ? best : Eigen::Vector3d(-best);
+  }
+  double agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+    return faces_agree_ ? a.dot(b) : std::abs(a.dot(b));
+  }
+
+  void lay_flat(const TangentFrame& frame, unsigned count) {
+    candidates_ = 0;
+    const Eigen::Vector3d& origin = sites_.position(site_);
+    const double usual = spacing_[site_];
+    for (unsigned j = 0; j < count; ++j) {
+      const std::uint32_t other = near_[j].site;
+      Candidate& candidate = candidate_[candidates_];
+      if (!unfold(frame, normal_at(other, frame.n), sites_.position(other) - origin, usual, candidate.offset)) continue;
+      candidate.spacing = spacing_[other];
+      ++candidates_;
+    }
+  }
+
+  /// The cell of a point at the rim of what its neighbours span, or beside a large step in density.
+  Cell bounded_cell(unsigned count) {
+    const double own = spacing_[site_];
+    // An isolated site lies farther off than its spacing, which is its neighbours', can explain.
+    const bool isolated = count > 0 && spacing_of(near_.data(), count) > spacing_[site_] * 1.001f;
+    double largest = own;
+    if (!isolated)
+      for (unsigned j = 0; j < candidates_; ++j)
+        largest = std::max(largest, static_cast<double>(candidate_[j].spacing));
+    CellPolygon polygon(longest_reach * largest);
+    for (unsigned j = 0; j < candidates_; ++j)
+      polygon.cut(candidate_[j].offset);
+    close_gaps(polygon, 2.0 * longest_reach * largest, own, isolated);
+    return {polygon.area(), std::sqrt(polygon.reach2()), isolated || polygon.open()};
+  }
+
+  /// Where no neighbour within `view` is seen over a wide angle the surface ends: neighbours are made up one local
+  /// spacing away, so that the cell ends half a spacing outside.
+  void close_gaps(CellPolygon& polygon, double view, double own, bool isolated) {
+    unsigned seen = 0;
+    double nearest = std::numeric_limits<double>::max();
+    for (unsigned j = 0; j < candidates_; ++j) {
+      const Eigen::Vector2d& q = candidate_[j].offset;
+      const double distance = q.norm();
+      if (distance > view) continue;
+      nearest = std::min(nearest, distance);
+      angle_[seen++] = std::atan2(q.y(), q.x());
+    }
+    if (seen == 0) angle_[seen++] = 0.0;
+    std::sort(angle_.begin(), angle_.begin() + seen);
+    const auto gap_after = [&](unsigned a) {
+      return a + 1 < seen ? angle_[a + 1] - angle_[a] : angle_[0] + 2.0 * pi - angle_[a];
+    };
+    double filled = 2.0 * pi;
+    for (unsigned a = 0; a < seen; ++a)
+      if (gap_after(a) > widest_gap) filled -= gap_after(a);
+    // The spacing was found as if neighbours were all around; they fill only part of the circle.
+    double distance = own;
+    if (!isolated && nearest < std::numeric_limits<double>::max())
+      distance = std::min(own, std::max(own * std::sqrt(std::max(filled, 0.0) / (2.0 * pi)), nearest));
+    for (unsigned a = 0; a < seen; ++a) {
+      const double gap = gap_after(a);
+      if (gap <= widest_gap) continue;
+      const int ghosts = std::max(1, static_cast<int>(std::ceil(gap / (0.5 * pi) - 0.05)) - 1);
+      for (int g = 1; g <= ghosts; ++g) {
+        const double angle = angle_[a] + gap * g / (ghosts + 1);
+        polygon.cut(distance * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      }
+    }
+    if (candidates_ == 0) polygon.cut({distance, 0.0}); // a square
+  }
+
+  const Sites& sites_;
+  const std::vector<Eigen::Vector3f>& normals_;
+  const std::vector<float>& spacing_;
+  bool faces_agree_;
+  std::uint32_t site_ = 0;
+  unsigned found_ = 0;
+  unsigned candidates_ = 0;
+  std::array<Neighbour, neighbour_stages.back()> near_;
+  std::array<Candidate, neighbour_stages.back()> candidate_;
+  std::array<double, neighbour_stages.back() + 1> angle_;
+};
+
+/// How many points at a site share the cell of one of them: those on the same side of the surface. A leaf that is
+/// stored as coincident fronts and backs has its area twice.
+class Sharing {
+public:
+  Sharing(const Sites::Points& points, const std::vector<Eigen::Vector3f>& normals, bool faces_agree)
+      : normals_(normals), first_(*points.begin()), faces_agree_(faces_agree) {
+    for (const std::uint32_t point : points)
+      ++count_[side(point)];
+  }
+  double with(std::uint32_t point) const { return count_[side(point)]; }
+
+private:
+  int side(std::uint32_t point) const {
+    return faces_agree_ && static_cast<double>(normals_[point].dot(normals_[first_])) < opposite_cosine ? 1 : 0;
+  }
+  const std::vector<Eigen::Vector3f>& normals_;
+  std::uint32_t first_;
+  bool faces_agree_;
+  std::array<double, 2> count_{0, 0};
+};
+
+float positive_float(double value) {
+  return static_cast<float>(std::clamp(value, static_cast<double>(std::numeric_limits<float>::min()),
+                                       static_cast<double>(std::numeric_limits<float>::max())));
+}
+
+} // namespace
+
+SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>& normals) {
+  SiteSpacing result;
+  result.spacing.assign(sites.size(),
+                        static_cast<float>(std::sqrt(2.0) / splat_overlap)); // a square for a disc of radius 1
+  if (sites.size() == 1) return result;
+  std::atomic<std::uint64_t> pairs{0}, opposite{0};
+  parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::array<Neighbour, spacing_neighbours> near;
+    std::uint64_t pairs_here = 0, opposite_here = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto site = static_cast<std::uint32_t>(s);
+      const unsigned count = sites.nearest(site, spacing_neighbours, near.data());
+      result.spacing[s] = std::max(spacing_of(near.data(), count), 1e-18f);
+      const Eigen::Vector3f& normal = normals[*sites.points(site).begin()];
+      for (unsigned j = 0; j < count; ++j) {
+        const Eigen::Vector3f e = (sites.position(near[j].site) - sites.position(site)).cast<float>();
+        if (std::abs(e.dot(normal)) > 0.5f * e.norm()) continue; // above or below, not beside
+        ++pairs_here;
+        opposite_here +=
+            static_cast<double>(normal.dot(normals[*sites.points(near[j].site).begin()])) < opposite_cosine;
+      }
+    }
+    pairs += pairs_here;
+    opposite += opposite_here;
+  });
+  if (pairs > 0) result.opposite = static_cast<double>(opposite) / static_cast<double>(pairs);
+  rein_in_isolated(sites, result.spacing);
+  return result;
+}
+
+SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
+                       bool faces_agree) {
+  SplatSizes sizes;
+  sizes.radius.resize(normals.size());
+  sizes.area.resize(normals.size());
+  std::atomic<std::size_t> capped{0};
+  const double unit = sites.unit();
+  parallel_ranges(sites.size(), 512, [&](std::size_t begin, std::size_t end) {
+    CellMaker maker(sites, normals, spacing.spacing, faces_agree);
+    std::size_t capped_here = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto site = static_cast<std::uint32_t>(s);
+      const Sites::Points points = sites.points(site);
+      const Sharing sharing(points, normals, faces_agree);
+      maker.go_to(site);
+      CellMaker::Cell cell{};
+      const Eigen::Vector3f* before = nullptr;
+      for (const std::uint32_t point : points) {
+        if (before == nullptr || normals[point] != *before) cell = maker.cell(normals[point]);
+        before = &normals[point];
+        sizes.radius[point] = positive_float(cell.reach * splat_overlap * unit);
+        sizes.area[point] = positive_float(cell.area / sharing.with(point) * unit * unit);
+        capped_here += cell.capped;
+      }
+    }
+    capped += capped_here;
+  });
+  sizes.capped = capped;
+  return sizes;
+}
+
+} // namespace pointgi

@@ -1,0 +1,36 @@
+#include "host/passes/device_pools.h"
+
+namespace pointgi {
+
+namespace {
+
+cl::Memory upload_texels(Session& session, const void* texels, std::size_t count, bool is_float, PoolStorage storage) {
+  switch (storage) {
+  case PoolStorage::image1d_buffer:
+    return session.upload_image1d(texels, count, is_float);
+  case PoolStorage::image2d:
+    return session.upload_image2d(texels, count, is_float, image_width_log2);
+  case PoolStorage::buffer:
+    break;
+  }
+  return session.upload(static_cast<const OctreeNode*>(texels), count).handle; // any 16-byte texel
+}
+
+} // namespace
+
+DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage) {
+  static_assert(sizeof(OctreeNode) == 16, "pools are counted in 16-byte texels");
+  DevicePools device;
+  device.nodes = upload_texels(session, pools.nodes.data(), pools.nodes.size(), false, storage);
+  device.points = upload_texels(session, pools.points.data(), pools.points.size() * POINT_TEXELS, true, storage);
+  if (storage == PoolStorage::buffer) {
+    device.begin_end = session.upload(pools.begin_end).handle;
+  } else { // four entries a texel (kernels/lib/pools.cl)
+    std::vector<std::uint32_t> padded = pools.begin_end;
+    padded.resize((padded.size() + 3) / 4 * 4);
+    device.begin_end = upload_texels(session, padded.data(), padded.size() / 4, false, storage);
+  }
+  return device;
+}
+
+} // namespace pointgi

@@ -1,0 +1,38 @@
+#pragma once
+/// The render stage: a window of the image, band after band (kernels/render/render.cl).
+#include "host/image/picture_writer.h"
+#include "host/passes/device_pools.h"
+#include "host/scene/lighting.h"
+#include <functional>
+
+namespace pointgi {
+
+/// What the device made of the window.
+struct RenderTotals {
+  std::uint64_t eye_rays = 0;
+  std::uint64_t rays = 0; ///< eye and shadow rays
+  std::uint64_t eye_rays_on_splats = 0;
+  std::uint64_t eye_rays_on_back_faces = 0;
+  double device_seconds = 0.0;
+  bool interrupted = false;
+  int rows_done = 0;
+};
+
+/// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist.
+std::vector<ChannelName> film_channels();
+
+struct RenderRequest {
+  PixelWindow window;
+  const DeviceLighting& lighting;
+  const Frame& frame;
+  View<std::uint32_t> point_ids; ///< id to write for each point of the pool
+  TraversalVariant variant;
+};
+
+/// Renders the window's rows from the top and hands finished bands to `take`, after each launch `progress` (share done,
+/// 0..1); stops between launches when `stop` says so (the rows finished so far have been handed over).
+RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
+                    const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
+                    const std::function<bool()>& stop);
+
+} // namespace pointgi

@@ -1,0 +1,171 @@
+#include "host/scene/lighting.h"
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace pointgi {
+
+namespace {
+
+void copy3(const Vector3d& from, float to[3]) {
+  for (int k = 0; k < 3; ++k)
+    to[k] = static_cast<float>(from[k]);
+}
+
+/// Intensity of a point light in cube units, W/sr per side²: irradiance is this over the cube distance squared.
+Vector3d cube_intensity(const PointLight& light, const Frame& frame) {
+  return light.power_w / (4.0 * 3.14159265358979323846) / frame.side / frame.side;
+}
+
+RadianceScale choose_scale(const Scene& scene, const Frame& frame) {
+  double largest = scene.environment.maxCoeff();
+  for (const MaterialSettings& material : scene.materials)
+    largest = std::max(largest, material.emission.maxCoeff());
+  for (const LightSettings& entry : scene.lights) {
+    if (const auto* point = std::get_if<PointLight>(&entry.light))
+      largest = std::max(largest, cube_intensity(*point, frame).maxCoeff());
+    else
+      largest = std::max(largest, std::get<DirectionalLight>(entry.light).irradiance.maxCoeff());
+  }
+  return {largest > 0.0 ? std::exp2(std::round(std::log2(largest))) : 1.0};
+}
+
+DeltaLight device_light(const LightSettings& entry, const Frame& frame, double scale) {
+  DeltaLight light{};
+  if (const auto* point = std::get_if<PointLight>(&entry.light)) {
+    light.type = LIGHT_POINT;
+    copy3((point->position - frame.origin) / frame.side, light.vector);
+    copy3(cube_intensity(*point, frame) / scale, light.strength);
+  } else {
+    const auto& directional = std::get<DirectionalLight>(entry.light);
+    light.type = LIGHT_DIRECTIONAL;
+    copy3(-directional.direction, light.vector);
+    copy3(directional.irradiance / scale, light.strength);
+  }
+  return light;
+}
+
+/// Running shares of `weights` in their sum; the last is exactly 1.
+template <typename Entries, typename Weight>
+double accumulate_shares(Entries& entries, Weight weight) {
+  double total = 0.0, sum = 0.0;
+  for (const auto& entry : entries)
+    total += weight(entry);
+  for (auto& entry : entries) {
+    sum += weight(entry);
+    entry.cumulative = static_cast<float>(sum / total);
+  }
+  if (!entries.empty())
+    entries.back().cumulative = 1.0f;
+  return total;
+}
+
+struct Axes {
+  Vector3d right, up, forward;
+};
+
+Axes camera_axes(const Scene& scene) {
+  const Vector3d forward = (scene.camera.look_at - scene.camera.position).normalized();
+  const Vector3d right = forward.cross(up_of(scene)).normalized();
+  return {right, right.cross(forward), forward};
+}
+
+std::array<float, 16> flat(const Eigen::Matrix4d& column_form) {
+  std::array<float, 16> m{};
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c)
+      m[static_cast<std::size_t>(4 * c + r)] = static_cast<float>(column_form(r, c)); // transposed: row vectors
+  return m;
+}
+
+Eigen::Matrix4d camera_matrix(const Scene& scene) {
+  const Axes axes = camera_axes(scene);
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.block<1, 3>(0, 0) = axes.right.transpose();
+  m.block<1, 3>(1, 0) = axes.up.transpose();
+  m.block<1, 3>(2, 0) = -axes.forward.transpose();
+  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * scene.camera.position;
+  return m;
+}
+
+/// Half the image plane's width and height at distance 1.
+struct HalfPlane {
+  double x, y;
+};
+
+HalfPlane half_plane(const Scene& scene) {
+  const double y = std::tan(scene.camera.fov_deg * 3.14159265358979323846 / 360.0);
+  return {y * scene.render.width / scene.render.height, y};
+}
+
+} // namespace
+
+Vector3d up_of(const Scene& scene) {
+  if (scene.camera.up)
+    return *scene.camera.up;
+  return scene.up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();
+}
+
+Camera device_camera(const Scene& scene, const Frame& frame) {
+  const Axes axes = camera_axes(scene);
+  const HalfPlane half = half_plane(scene);
+  Camera camera{};
+  copy3((scene.camera.position - frame.origin) / frame.side, camera.origin);
+  copy3(axes.forward - half.x * axes.right + half.y * axes.up, camera.corner);
+  copy3(axes.right * (2.0 * half.x / scene.render.width), camera.step_x);
+  copy3(-axes.up * (2.0 * half.y / scene.render.height), camera.step_y);
+  return camera;
+}
+
+std::array<float, 16> world_to_camera(const Scene& scene) { return flat(camera_matrix(scene)); }
+
+std::array<float, 16> world_to_ndc(const Scene& scene) {
+  const HalfPlane half = half_plane(scene);
+  Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
+  projection(0, 0) = 0.5 / half.x;
+  projection(0, 2) = -0.5;
+  projection(1, 1) = 0.5 / half.y;
+  projection(1, 2) = -0.5;
+  projection(2, 2) = -1.0;
+  projection(3, 2) = -1.0;
+  return flat(projection * camera_matrix(scene));
+}
+
+DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points) {
+  DeviceLighting result;
+  result.radiance = choose_scale(scene, frame);
+  const double scale = result.radiance.scale;
+  std::vector<double> power(scene.materials.size()); // luminance of each material's emission
+  const Vector3d luminance(0.2126, 0.7152, 0.0722);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    Material material{};
+    copy3(scene.materials[m].emission / scale, material.emission);
+    result.materials.push_back(material);
+    power[m] = luminance.dot(scene.materials[m].emission) / scale;
+  }
+  const auto emitted = [&](std::size_t p) { return power[static_cast<std::size_t>(points[p].material)] * points[p].area; };
+  for (std::size_t p = 0; p < points.size; ++p)
+    if (emitted(p) > 0.0)
+      result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
+  const double total = accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
+  for (const LightSettings& entry : scene.lights) {
+    const DeltaLight light = device_light(entry, frame, scale);
+    if (light.strength[0] + light.strength[1] + light.strength[2] > 0.0f)
+      result.delta.push_back(light);
+  }
+  accumulate_shares(result.delta, [&](const DeltaLight& l) {
+    return luminance.dot(Vector3d(l.strength[0], l.strength[1], l.strength[2])) + 1e-30;
+  });
+  RenderParams& params = result.params;
+  params.camera = device_camera(scene, frame);
+  copy3(scene.environment / scale, params.environment);
+  params.emitted_power = static_cast<float>(total);
+  params.samples = static_cast<pg_uint>(scene.render.spp);
+  params.seed = scene.render.seed;
+  params.jitter = scene.render.jitter ? 1u : 0u;
+  params.delta_lights = static_cast<pg_uint>(result.delta.size());
+  params.emitters = static_cast<pg_uint>(result.emitters.size());
+  result.has_environment = scene.environment.maxCoeff() > 0.0;
+  return result;
+}
+
+} // namespace pointgi

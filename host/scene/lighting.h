@@ -1,0 +1,38 @@
+#pragma once
+/// Camera and lights of a scene as the render kernels take them.
+#include "host/scene/splats.h"
+#include "octree/view.h"
+#include "shared/render_types.h"
+
+namespace pointgi {
+
+/// Radiometric values on the device are world values / scale. A power of two, so that dividing and multiplying back is
+/// exact; chosen from the scene's brightest source, so that 1e-20 W and 1e20 W stay inside float.
+struct RadianceScale {
+  double scale = 1.0;
+};
+
+struct DeviceLighting {
+  RadianceScale radiance;
+  RenderParams params{};             ///< everything but step_delta
+  std::vector<Material> materials;   ///< one a material of the scene
+  std::vector<DeltaLight> delta;     ///< point and directional lights with power > 0
+  std::vector<Emitter> emitters;     ///< splats of emitting materials
+  bool has_environment = false;
+};
+
+/// `points` is the octree's point pool: emitters refer to it.
+DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points);
+
+/// The camera for an image of this size in the frame's cube.
+Camera device_camera(const Scene& scene, const Frame& frame);
+
+/// Row-major matrices for row vectors [x y z 1], as OpenEXR's worldToCamera (camera looks down -z) and worldToNDC
+/// (0..1 from the lower left corner) have them.
+std::array<float, 16> world_to_camera(const Scene& scene);
+std::array<float, 16> world_to_ndc(const Scene& scene);
+
+/// The upward direction of the scene.
+Vector3d up_of(const Scene& scene);
+
+} // namespace pointgi

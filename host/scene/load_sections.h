@@ -1,0 +1,42 @@
+#pragma once
+/// The parts of a scene file, a function each; load_scene() calls them in turn.
+#include "host/scene/toml_reader.h"
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+namespace pointgi {
+
+void load_render(const TableReader& root, RenderSettings& render);
+
+/// Refuses cameras that see nothing or have no upright: position at look_at, or the view along the scene's up.
+void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera);
+
+void load_radiosity(const TableReader& root, RadiositySettings& radiosity);
+void load_caustics(const TableReader& root, CausticSettings& caustics);
+void load_environment(const TableReader& root, Vector3d& radiance);
+
+/// Appends to `warnings` where a key will have no effect.
+std::vector<MaterialSettings> load_materials(const TableReader& root, std::vector<std::string>& warnings);
+
+/// The names that clouds and shapes may use.
+class MaterialNames {
+public:
+  explicit MaterialNames(const std::vector<MaterialSettings>& materials);
+
+  /// The table's `material`, refused with the nearest known name when there is none of that name.
+  std::string read(const TableReader& table) const;
+
+private:
+  std::vector<std::string> names_;
+  std::unordered_set<std::string> known_;
+};
+
+/// `scene_file`: files are relative to its folder, and it cannot be a cloud itself.
+std::vector<CloudSettings> load_clouds(const TableReader& root, const MaterialNames& materials,
+                                       const std::string& scene_file);
+
+std::vector<ShapeSettings> load_shapes(const TableReader& root, const MaterialNames& materials);
+std::vector<LightSettings> load_lights(const TableReader& root);
+
+} // namespace pointgi

@@ -1,0 +1,95 @@
+/// The sections that stand once in a scene: [render], [camera], [radiosity], [caustics], [environment].
+#include "host/scene/load_sections.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace pointgi {
+namespace {
+
+void load_size(const TableReader& table, RenderSettings& render) {
+  const toml::node* node = table.find("size");
+  if (node == nullptr) return;
+  const std::string expected = "expected [width, height], two integers from " + std::to_string(limits::image_side.low) +
+                               " to " + std::to_string(limits::image_side.high);
+  const auto side = [&](std::size_t index) {
+    const toml::array* array = node->as_array();
+    const auto* value = array != nullptr && array->size() == 2 ? (*array)[index].as_integer() : nullptr;
+    if (value == nullptr || value->get() < limits::image_side.low || value->get() > limits::image_side.high)
+      table.fail("size", expected + ", found " + found_text(*node));
+    return value->get();
+  };
+  const long long width = side(0);
+  const long long height = side(1);
+  if (width * height > limits::image_pixels)
+    table.fail("size", "expected at most " + std::to_string(limits::image_pixels) + " pixels in all, found " +
+                           std::to_string(width * height) + "; make a side smaller");
+  render.width = static_cast<int>(width);
+  render.height = static_cast<int>(height);
+}
+
+} // namespace
+
+void load_render(const TableReader& root, RenderSettings& render) {
+  const std::optional<TableReader> table = root.table("render");
+  if (!table) return;
+  table->allow_only({"size", "spp", "seed", "exposure", "max_depth", "jitter"});
+  load_size(*table, render);
+  if (const auto spp = table->integer("spp", limits::spp)) render.spp = static_cast<int>(*spp);
+  if (const auto seed = table->integer("seed", limits::seed)) render.seed = static_cast<unsigned>(*seed);
+  if (const auto exposure = table->number("exposure", limits::exposure)) render.exposure = *exposure;
+  if (const auto depth = table->integer("max_depth", limits::max_depth)) render.max_depth = static_cast<int>(*depth);
+  if (const auto jitter = table->boolean("jitter")) render.jitter = *jitter;
+}
+
+void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
+  const std::optional<TableReader> table = root.table("camera");
+  if (!table) return;
+  table->allow_only({"position", "look_at", "fov_deg"});
+  camera.place = table->place();
+  camera.chosen = true;
+  camera.position = table->need_vector3("position", limits::coordinate);
+  camera.look_at = table->need_vector3("look_at", limits::coordinate);
+  if (const auto fov = table->number("fov_deg", limits::fov)) camera.fov_deg = *fov;
+
+  const Vector3d view = camera.look_at - camera.position;
+  if (view.norm() <= limits::same_point * std::max(camera.look_at.norm(), camera.position.norm()))
+    table->fail("look_at", "expected a point other than camera.position, found the same; the camera has no direction");
+  const Vector3d upright = up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();
+  if (view.normalized().cross(upright).norm() < limits::parallel_sine)
+    table->fail("look_at", std::string("the camera looks along up = \"") + (up == UpAxis::y ? "y" : "z") +
+                               "\", so that no side of the picture is up; move it a little aside or set up = \"" +
+                               (up == UpAxis::y ? "z" : "y") + "\"");
+}
+
+void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
+  const std::optional<TableReader> table = root.table("radiosity");
+  if (!table) return;
+  table->allow_only({"method", "order", "vmap_samples", "tolerance", "direct_light"});
+  radiosity.place = table->place();
+  if (const auto method = table->choice("method", {"fmm", "direct", "progressive", "mls", "voxel_cone"}))
+    radiosity.method = *method;
+  if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
+  if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))
+    radiosity.vmap_samples = static_cast<int>(*samples);
+  if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
+  if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
+}
+
+void load_caustics(const TableReader& root, CausticSettings& caustics) {
+  const std::optional<TableReader> table = root.table("caustics");
+  if (!table) return;
+  table->allow_only({"photons", "gather_k", "power"});
+  caustics.place = table->place();
+  if (const auto photons = table->integer("photons", limits::photons)) caustics.photons = *photons;
+  if (const auto gather = table->integer("gather_k", limits::gather_k)) caustics.gather_k = static_cast<int>(*gather);
+  if (const auto power = table->choice("power", {"unbiased", "equal"})) caustics.power = *power;
+}
+
+void load_environment(const TableReader& root, Vector3d& radiance) {
+  const std::optional<TableReader> table = root.table("environment");
+  if (!table) return;
+  table->allow_only({"radiance"});
+  radiance = table->need_vector3("radiance", limits::light);
+}
+
+} // namespace pointgi

@@ -1,0 +1,148 @@
+#pragma once
+/// The scene as the file describes it, in world units and doubles: nothing loaded, nothing sampled yet.
+#include "host/cloud/complete.h"
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace pointgi {
+
+using Eigen::Vector3d;
+
+/// Where an entry of the scene stands: "scene.toml:12:3". Errors found after parsing still name it.
+struct SourcePlace {
+  std::string file;
+  unsigned line = 0;
+  unsigned column = 0;
+  std::string text() const; ///< "file:line:column", or "--set" / "(default)" where there is no line
+};
+
+enum class UpAxis { y, z };
+enum class ColourSpace { srgb, linear };
+
+struct RenderSettings {
+  int width = 640;
+  int height = 480;
+  int spp = 32;             ///< samples a pixel
+  unsigned seed = 1;
+  double exposure = 0.0;    ///< stops, for the PNG only
+  int max_depth = 8;
+  bool jitter = true;
+};
+
+struct CameraSettings {
+  Vector3d position{0, 0, 0};
+  Vector3d look_at{0, 0, -1};
+  double fov_deg = 40.0; ///< vertical
+  std::optional<Vector3d> up; ///< instead of the scene's axis
+  bool chosen = false;        ///< the file has a [camera]; without one the program finds a view
+  SourcePlace place;
+};
+
+enum class MaterialType { diffuse, mirror, glass, phong };
+const char* name_of(MaterialType type);
+
+struct MaterialSettings {
+  std::string name;
+  MaterialType type = MaterialType::diffuse;
+  std::optional<Vector3d> albedo; ///< linear unless colour_space says sRGB; absent: the points' colours
+  Vector3d emission{0, 0, 0};     ///< radiance [W/m²/sr] of the front side
+  Vector3d reflectance{1, 1, 1};  ///< mirror
+  double ior = 1.5;               ///< glass
+  Vector3d absorption{0, 0, 0};   ///< glass, 1/length
+  Vector3d specular{0, 0, 0};     ///< phong
+  double exponent = 1.0;          ///< phong
+  ColourSpace colour_space = ColourSpace::srgb; ///< of the points' colours
+  SourcePlace place;
+};
+
+struct CloudSettings {
+  std::string file;     ///< absolute, or relative to the working directory: already joined with the scene's folder
+  std::string material; ///< name of a material; checked to exist
+  double scale = 1.0;
+  Vector3d rotate_deg{0, 0, 0}; ///< about x, then y, then z
+  Vector3d translate{0, 0, 0};
+  NormalSource normals = NormalSource::automatic;
+  RadiusSource radii = RadiusSource::automatic;
+  std::optional<double> radius;            ///< one radius for all points, world units after scaling
+  std::optional<Vector3d> viewpoint;       ///< sensor position in the file's coordinates
+  double spacing = 0.0;                    ///< for meshes: distance of the sampled splats, world units; 0 = chosen
+  SourcePlace place;
+};
+
+struct QuadShape {
+  Vector3d corner, edge_u, edge_v;
+};
+struct SphereShape {
+  Vector3d centre;
+  double radius;
+  bool inward = false;
+};
+struct BoxShape {
+  Vector3d min, max;
+  bool inward = false;
+};
+struct DiscShape {
+  Vector3d centre, normal;
+  double radius;
+};
+struct CylinderShape { ///< open tube from `base` to `top`
+  Vector3d base, top;
+  double radius;
+  bool inward = false;
+};
+using ShapeGeometry = std::variant<QuadShape, SphereShape, BoxShape, DiscShape, CylinderShape>;
+
+struct ShapeSettings {
+  ShapeGeometry geometry;
+  double spacing = 0.0; ///< world units between neighbouring splats
+  std::string material;
+  SourcePlace place;
+};
+
+struct PointLight {
+  Vector3d position;
+  Vector3d power_w; ///< W; intensity is power_w / 4pi
+};
+struct DirectionalLight {
+  Vector3d direction;  ///< the way the light travels; unit after parsing
+  Vector3d irradiance; ///< W/m² on a surface facing it
+};
+struct LightSettings {
+  std::variant<PointLight, DirectionalLight> light;
+  SourcePlace place;
+};
+
+struct RadiositySettings {
+  std::string method = "fmm";
+  int order = 3;
+  int vmap_samples = 8;
+  double tolerance = 1e-3;
+  std::string direct_light = "shadow_rays";
+  std::optional<SourcePlace> place; ///< set when the file has the section
+};
+struct CausticSettings {
+  long long photons = 400000;
+  int gather_k = 50;
+  std::string power = "unbiased";
+  std::optional<SourcePlace> place;
+};
+
+struct Scene {
+  std::string file;
+  UpAxis up = UpAxis::y;
+  RenderSettings render;
+  CameraSettings camera;
+  std::vector<MaterialSettings> materials;
+  std::vector<CloudSettings> clouds;
+  std::vector<ShapeSettings> shapes;
+  std::vector<LightSettings> lights;
+  Vector3d environment{0, 0, 0}; ///< radiance [W/m²/sr] from every direction
+  RadiositySettings radiosity;
+  CausticSettings caustics;
+  std::vector<std::string> warnings;
+};
+
+} // namespace pointgi

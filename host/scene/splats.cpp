@@ -1,0 +1,135 @@
+#include "host/scene/splats.h"
+#include "host/cloud/mesh.h"
+#include "host/cloud/ply.h"
+#include "host/error.h"
+#include "host/image/srgb.h"
+#include "host/scene/sample_shape.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
+
+namespace pointgi {
+
+namespace {
+
+/// What a cloud without colours and a material without albedo look like: a light grey, as plaster is.
+constexpr double default_albedo = 0.75;
+
+bool has_extension(const std::string& path, const std::string& extension) {
+  return path.size() >= extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), path.rbegin(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+std::uint32_t index_of(const Scene& scene, const std::string& name) {
+  const auto at = std::find_if(scene.materials.begin(), scene.materials.end(),
+                               [&](const MaterialSettings& m) { return m.name == name; });
+  return static_cast<std::uint32_t>(at - scene.materials.begin());
+}
+
+/// Diffuse reflectance of each point: the material's albedo, else the points' colours, else grey.
+void set_albedo(PointCloud& cloud, const MaterialSettings& material, bool& from_points) {
+  if (!material.albedo && !cloud.colour.empty()) {
+    from_points = true;
+    for (Eigen::Vector3f& c : cloud.colour)
+      for (int k = 0; k < 3; ++k) {
+        const float value = std::clamp(c[k], 0.0f, 1.0f);
+        c[k] = material.colour_space == ColourSpace::srgb ? srgb_to_linear(value) : value;
+      }
+    return;
+  }
+  const Vector3d albedo = material.albedo.value_or(Vector3d::Constant(default_albedo));
+  cloud.colour.assign(cloud.size(), albedo.cast<float>());
+}
+
+void place(PointCloud& cloud, const CloudSettings& settings) {
+  const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
+  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) *
+                                    Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+                                       .toRotationMatrix();
+  const bool turned = !settings.rotate_deg.isZero();
+  const Eigen::Matrix3f rotation_f = rotation.cast<float>();
+  const auto scale = static_cast<float>(settings.scale);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    Vector3d p = cloud.position[i] * settings.scale;
+    if (turned) {
+      p = rotation * p;
+      cloud.normal[i] = (rotation_f * cloud.normal[i]).normalized();
+    }
+    cloud.position[i] = p + settings.translate;
+    cloud.radius[i] = settings.radius ? static_cast<float>(*settings.radius) : cloud.radius[i] * scale;
+    cloud.area[i] *= scale * scale;
+  }
+}
+
+void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
+  const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (std::size_t i = 0; i < part.size(); ++i)
+    all.source.push_back(static_cast<std::uint32_t>(i));
+  all.material.insert(all.material.end(), part.size(), material);
+  if (all.cloud.size() == 0) { // the common scene, one cloud, is not copied
+    all.cloud = std::move(part);
+    all.cloud.triangle = {};
+    return;
+  }
+  join(all.cloud.position, part.position);
+  join(all.cloud.normal, part.normal);
+  join(all.cloud.colour, part.colour);
+  join(all.cloud.radius, part.radius);
+  join(all.cloud.area, part.area);
+}
+
+} // namespace
+
+PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
+  PointCloud cloud = has_extension(settings.file, ".ply")
+                         ? read_ply(settings.file, report)
+                         : sample_mesh(settings.file, settings.spacing / settings.scale, report);
+  try {
+    complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);
+  } catch (const Error& error) {
+    throw Error(error.code(), settings.file + ": " + error.what());
+  }
+  cloud.triangle = {}; // they have given their normals; nothing later reads them
+  return cloud;
+}
+
+WorldSplats load_splats(const Scene& scene) {
+  WorldSplats all;
+  for (const CloudSettings& settings : scene.clouds) {
+    CloudReport& report = all.reports.emplace_back();
+    PointCloud cloud = load_cloud(settings, report);
+    const std::uint32_t material = index_of(scene, settings.material);
+    set_albedo(cloud, scene.materials[material], all.has_point_colours);
+    place(cloud, settings);
+    append(all, std::move(cloud), material);
+  }
+  for (const ShapeSettings& settings : scene.shapes) {
+    PointCloud cloud = sample_shape(settings);
+    const std::uint32_t material = index_of(scene, settings.material);
+    bool unused = false;
+    set_albedo(cloud, scene.materials[material], unused);
+    append(all, std::move(cloud), material);
+  }
+  return all;
+}
+
+std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame) {
+  const PointCloud& cloud = splats.cloud;
+  std::vector<Splat> result(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    Splat& s = result[i];
+    const Eigen::Vector3f p = frame.to_cube(cloud.position[i]);
+    std::copy_n(p.data(), 3, s.position);
+    std::copy_n(cloud.normal[i].data(), 3, s.normal);
+    std::copy_n(cloud.colour[i].data(), 3, s.colour);
+    // Divided in double: the side may be 1e18 or 1e-18, whose inverse squared leaves float.
+    s.radius = static_cast<float>(cloud.radius[i] / frame.side);
+    s.area = static_cast<float>(cloud.area[i] / frame.side / frame.side);
+    s.material = static_cast<float>(splats.material[i]);
+  }
+  return result;
+}
+
+} // namespace pointgi

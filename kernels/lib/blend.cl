@@ -1,0 +1,70 @@
+/* Overlapping discs near the first hit become one smooth surface: colour, normal and depth are means with a weight that
+ * falls to zero at a disc's rim, or seams would show (method.md section 6). */
+#include "lib/ray.cl"
+#include "lib/ray_splat.cl"
+
+/* How far behind the first hit a disc still belongs to the same surface, in radii of the disc hit first. Overlapping
+ * neighbours of a curved or noisy surface lie less than a radius apart along the ray. */
+#ifndef BLEND_DEPTH
+#define BLEND_DEPTH 1.0f
+#endif
+#define BLEND_COSINE 0.5f /* discs that face another way belong to another surface: a corner stays sharp */
+
+typedef struct Surface {
+  float3 position, normal, albedo; /* normal on the splats' front side, unit */
+  float t;
+  float radius;  /* of the disc hit first */
+  uint splat;    /* the disc hit first */
+  uint material; /* its material */
+  bool front;    /* the ray met the front side */
+} Surface;
+
+typedef struct Blend {
+  float3 normal_of_first;
+  float3 normal, albedo; /* weighted sums, as are weight and t */
+  float weight, t;
+  float t_first, t_end; /* discs hit in [t_first, t_end) count */
+  float radius;
+  uint splat, material;
+} Blend;
+
+inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) {
+  if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
+    return;
+  /* A tiny floor keeps a lone disc visible out to its very rim. */
+  const float rim = fmax(1.0f - q, 1e-3f);
+  const float depth = 1.0f - (t - b->t_first) / (b->t_end - b->t_first);
+  const float w = rim * rim * depth;
+  b->weight += w;
+  b->normal += w * normal;
+  b->albedo += w * albedo;
+  b->t += w * t;
+}
+
+/* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
+inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
+  float q;
+  const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
+  b->normal_of_first = normal.xyz;
+  b->normal = b->albedo = (float3)(0.0f);
+  b->weight = b->t = 0.0f;
+  b->t_first = t;
+  /* At least a few float steps, so that the window is never empty. */
+  b->t_end = t + fmax(BLEND_DEPTH * centre.w, 1e-6f * t);
+  b->radius = centre.w;
+  b->splat = splat;
+  b->material = (uint)normal.w;
+  blend_add(b, t, q, normal.xyz, albedo);
+}
+
+inline void blend_end(const Blend* b, Ray ray, Surface* s) {
+  const float scale = 1.0f / b->weight;
+  s->t = b->t * scale;
+  s->position = fma((float3)(s->t), ray.direction, ray.origin);
+  s->normal = normalize3(b->normal);
+  s->albedo = b->albedo * scale;
+  s->radius = b->radius;
+  s->splat = b->splat;
+  s->material = b->material;
+  s->front = dot3(b->normal_of_first, ray.direction) < 0.0f;
+}

@@ -1,0 +1,48 @@
+/* Access to the octree's pools, the one place that knows how they are stored.
+ *   POOL_BUFFER  plain buffers
+ *   POOL_IMAGE1D image1d_buffer_t, RGBA 32-bit texels
+ *   POOL_IMAGE2D image2d_t of 2^POOL_WIDTH_LOG2 texels a row, RGBA 32-bit texels
+ * Kernels take POOL_PARAMS and hand on POOL_ARGS. In images the Begin-End pool lies four entries to a texel, because
+ * OpenCL 1.2 promises no one-channel format. */
+#ifndef POOL_STORAGE
+#define POOL_STORAGE POOL_BUFFER
+#endif
+#define POOL_BUFFER 0
+#define POOL_IMAGE1D 1
+#define POOL_IMAGE2D 2
+#ifndef POOL_WIDTH_LOG2
+#define POOL_WIDTH_LOG2 12 /* texels a row of the image2d form, log2 */
+#endif
+#include "shared/octree_types.h"
+
+#define POOL_ARGS node_pool, begin_end_pool, point_pool
+
+#if POOL_STORAGE == POOL_BUFFER
+#define POOL_PARAMS \
+  const __global uint4 *restrict node_pool, const __global uint *restrict begin_end_pool, const __global float4 *restrict point_pool
+#define pool_node(i) (node_pool[i])
+#define pool_begin_end(i) (begin_end_pool[i])
+#define pool_point_texel(i) (point_pool[i])
+#else
+__constant sampler_t pool_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_NONE | CLK_FILTER_NEAREST;
+inline uint pool_component(uint4 texel, uint i) {
+  const uint low = (i & 1u) ? texel.y : texel.x, high = (i & 1u) ? texel.w : texel.z;
+  return (i & 2u) ? high : low;
+}
+#define pool_begin_end(i) pool_component(pool_texel_ui(begin_end_pool, (i) >> 2), (i) & 3u)
+#define pool_node(i) pool_texel_ui(node_pool, i)
+#define pool_point_texel(i) pool_texel_f(point_pool, i)
+#if POOL_STORAGE == POOL_IMAGE1D
+#define POOL_PARAMS __read_only image1d_buffer_t node_pool, __read_only image1d_buffer_t begin_end_pool, __read_only image1d_buffer_t point_pool
+#define pool_texel_ui(pool, i) read_imageui(pool, (int)(i))
+#define pool_texel_f(pool, i) read_imagef(pool, (int)(i))
+#elif POOL_STORAGE == POOL_IMAGE2D
+#define POOL_PARAMS __read_only image2d_t node_pool, __read_only image2d_t begin_end_pool, __read_only image2d_t point_pool
+#define pool_at(i) ((int2)((int)((i) & ((1u << POOL_WIDTH_LOG2) - 1u)), (int)((i) >> POOL_WIDTH_LOG2)))
+#define pool_texel_ui(pool, i) read_imageui(pool, pool_sampler, pool_at(i))
+#define pool_texel_f(pool, i) read_imagef(pool, pool_sampler, pool_at(i))
+#else
+#error "POOL_STORAGE must be POOL_BUFFER, POOL_IMAGE1D or POOL_IMAGE2D"
+#endif
+#endif
+

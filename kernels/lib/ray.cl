@@ -1,0 +1,48 @@
+/* Rays, hits, and which hits of a shadow ray belong to the surfaces at its two ends. */
+#include "lib/vector.cl"
+#include "shared/traversal_types.h"
+
+typedef struct Ray {
+  float3 origin, direction; /* root cube; unit */
+  float t_min, t_max;
+#ifdef STEP_ABSOLUTE
+  float step_delta;
+#endif
+} Ray;
+
+typedef struct Hit {
+  float t;    /* or the ray's t_max */
+  uint splat; /* or NO_SPLAT */
+} Hit;
+
+/* The part of the ray in the root cube, widened by a little more than rounding, and inside [t_min, t_max]; false when
+ * there is none. */
+inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
+  const float3 inverse = 1.0f / ray.direction;
+  const float3 a = (-1e-6f - ray.origin) * inverse, b = (1.0f + 1e-6f - ray.origin) * inverse;
+  /* fmin and fmax drop the NaN of 0 * inf: an origin exactly on the plane of a slab the ray runs along is inside. */
+  const float3 t0 = fmin(a, b), t1 = fmax(a, b);
+  *t_enter = fmax(fmax(t0.x, t0.y), fmax(t0.z, ray.t_min));
+  *t_leave = fmin(fmin(t1.x, t1.y), fmin(t1.z, ray.t_max));
+  return *t_enter <= *t_leave;
+}
+
+/* Overlapping discs stick out of the surface they stand for, so a ray that leaves a surface would meet its neighbours'
+ * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end, in units of the
+ * two discs' radii, and its disc faces the same way. A wall across, or the far side of a thin sheet, blocks at any
+ * distance, so corners and contacts do not leak. */
+#define SELF_HIT_REACH 1.5f
+#define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
+
+typedef struct ShadowEnds {
+  float3 origin_normal, target_normal; /* facing the ray or not: the side does not matter, the splat's own normal does */
+  float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
+} ShadowEnds;
+
+inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
+  const bool at_origin = t < SELF_HIT_REACH * (ends.origin_radius + radius) &&
+                         dot3(normal, ends.origin_normal) > SELF_HIT_COSINE;
+  const bool at_target = t_max - t < SELF_HIT_REACH * (ends.target_radius + radius) &&
+                         dot3(normal, ends.target_normal) > SELF_HIT_COSINE;
+  return at_origin || at_target;
+}

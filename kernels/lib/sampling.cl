@@ -1,0 +1,52 @@
+/* Sample positions: strata of a pixel's 32 rays, and light samples stratified over the same 32. */
+#include "lib/rng.cl"
+#include "lib/vector.cl"
+#include "shared/render_types.h"
+
+/* What the random numbers of one ray are made from. */
+typedef struct SampleId {
+  uint2 pixel;
+  uint sample; /* of the pixel; sample % 32 is its place in the 8x4 grid, sample / 32 the pass */
+  uint seed;
+} SampleId;
+
+/* Four numbers in [0,1) for one use, `dimension`, of one ray. */
+inline float4 random4(SampleId id, uint dimension) {
+  const uint4 h = pcg4d((uint4)(id.pixel.x, id.pixel.y, id.sample, id.seed * 0x9E3779B9u + dimension));
+  return (float4)(unit_float(h.x), unit_float(h.y), unit_float(h.z), unit_float(h.w));
+}
+
+/* Two numbers in [0,1), stratified over the pixel's 32 rays of one pass: the Hammersley set of 32 points, its strata
+ * shuffled by a random XOR a pixel, pass and use, so that light samples are independent of the place in the pixel, and
+ * jittered inside the strata. z and w are plain random numbers. */
+inline float4 stratified4(SampleId id, uint dimension) {
+  const uint pass = id.sample / GRID_RAYS, i = id.sample % GRID_RAYS;
+  const uint4 scramble = pcg4d((uint4)(id.pixel.x, id.pixel.y, pass, (id.seed + 0x68E31DA4u) * 0x9E3779B9u + dimension));
+  const uint first = i ^ (scramble.x >> 27);
+  const uint reversed = ((i & 1u) << 4) | ((i & 2u) << 2) | (i & 4u) | ((i & 8u) >> 2) | ((i & 16u) >> 4);
+  const uint second = reversed ^ (scramble.y >> 27);
+  const float4 r = random4(id, dimension);
+  return (float4)(((float)first + r.x) * (1.0f / GRID_RAYS), ((float)second + r.y) * (1.0f / GRID_RAYS), r.z, r.w);
+}
+
+/* Place in the pixel, [0,1)^2: sample (i, j) of the 8x4 grid at ((i+u)/8, (j+v)/4). With fewer than 32 samples the
+ * grid is coarser: 1 -> 1x1, 2 -> 2x1, 4 -> 2x2, 8 -> 4x2, 16 -> 4x4 (other counts leave cells of the next one empty). */
+inline float2 place_in_pixel(SampleId id, uint samples, bool jitter) {
+  uint columns = GRID_X, rows = GRID_Y;
+  if (samples <= 16u) {
+    columns = samples > 4u ? 4u : samples > 1u ? 2u : 1u;
+    rows = samples > 8u ? 4u : samples > 2u ? 2u : 1u;
+  }
+  const uint i = id.sample % GRID_RAYS;
+  const float4 r = random4(id, 0u);
+  const float u = jitter ? r.x : 0.5f, v = jitter ? r.y : 0.5f;
+  return (float2)(((float)(i % columns) + u) / (float)columns, ((float)(i / columns) + v) / (float)rows);
+}
+
+/* Unit vector about n, density cos/pi. */
+inline float3 cosine_direction(float3 n, float u, float v) {
+  float3 a, b;
+  tangents(n, &a, &b);
+  const float r = sqrt(u), phi = 6.2831853f * v;
+  return normalize3(r * cos(phi) * a + r * sin(phi) * b + sqrt(fmax(0.0f, 1.0f - u)) * n);
+}

@@ -1,0 +1,42 @@
+#ifndef POINTGI_SHARED_OCTREE_TYPES_H
+#define POINTGI_SHARED_OCTREE_TYPES_H
+#include "shared/scalar.h"
+/* The three pools of the octree as the device reads them (method.md section 2). Positions and lengths are in units of
+ * the root cube, [0,1)^3. All children of a node are stored, empty ones too, next to each other along x + N*y + N*N*z. */
+
+#define NODE_EMPTY 0u    /* no splat touches the cell */
+#define NODE_LEAF 1u     /* owns an entry in the Begin-End pool */
+#define NODE_INTERNAL 2u /* owns N^3 children */
+
+#define NODE_TYPE(header) ((header) >> 30)
+#define NODE_LEVEL(header) (((header) >> 24) & 63u)
+#define NODE_HEADER(type, level) (((type) << 30) | ((level) << 24))
+
+/* Finest cell of the tree: 2^MAX_AXIS_BITS a side. A Morton key holds 3*21 bits, and a float in [0,1) holds 21 bits of a
+ * coordinate exactly, which exact stepping needs. */
+#define MAX_AXIS_BITS 21
+
+/* Node pool: one 128-bit texel a node. */
+typedef struct OctreeNode {
+  pg_uint header;  /* bytes 0-3: bits 31-30 type, 29-24 level (root 0), 23-0 zero */
+  pg_uint address; /* bytes 4-7: internal: pool index of the first child; leaf: index of beginP in the Begin-End pool; empty: 0 */
+  pg_uint extra;   /* bytes 8-11: leaf: number of extra splats; internal: index of the first own point; empty: 0 */
+  pg_uint count;   /* bytes 12-15: own points of the leaf, or of the subtree; empty: 0 */
+} OctreeNode;
+
+/* Begin-End pool, 4-byte entries: a leaf's beginP (index of its first own point), then the addresses of its extra
+ * splats; the entry behind them is the next leaf's beginP, and thereby this leaf's endP. The last leaf is followed by
+ * one closing entry, the number of points. */
+
+/* Point pool: 44 bytes a point in three 16-byte texels; the twelfth scalar carries the effective area. */
+#define POINT_TEXELS 3
+typedef struct OctreePoint {
+  float position[3]; /* texel 0, bytes 0-11: root cube */
+  float radius;      /* texel 0, bytes 12-15: splat radius, root cube */
+  float normal[3];   /* texel 1, bytes 16-27: unit */
+  float material;    /* texel 1, bytes 28-31: index into the materials, a whole number below 2^24 */
+  float colour[3];   /* texel 2, bytes 32-43: diffuse reflectance rho, linear RGB, [0,1] */
+  float area;        /* texel 2, bytes 44-47: effective area A_i, root cube squared */
+} OctreePoint;
+
+#endif

@@ -1,0 +1,74 @@
+#ifndef POINTGI_SHARED_RENDER_TYPES_H
+#define POINTGI_SHARED_RENDER_TYPES_H
+#include "shared/scalar.h"
+/* What the host tells the render kernels of a scene. Lengths are in root cube units; radiometric quantities are divided
+ * by one power of two of the host's choosing (RadianceScale), so that lights of 1e-20 or 1e20 W stay inside float. */
+
+/* A pixel's 32 rays are one work-group of GRID_X x GRID_Y work-items (method.md section 6). */
+#define GRID_X 8
+#define GRID_Y 4
+#define GRID_RAYS (GRID_X * GRID_Y)
+
+/* Pinhole camera: the ray through image position (x, y), in pixels from the top left corner of the image, runs from
+ * `origin` along corner + x * step_x + y * step_y. */
+typedef struct Camera {
+  float origin[3]; /* bytes 0-11: root cube; may lie outside it */
+  float pad0;
+  float corner[3]; /* bytes 16-27 */
+  float pad1;
+  float step_x[3]; /* bytes 32-43: to the next pixel to the right */
+  float pad2;
+  float step_y[3]; /* bytes 48-59: to the next pixel downwards */
+  float pad3;
+} Camera;
+
+typedef struct RenderParams {
+  Camera camera;           /* bytes 0-63 */
+  float environment[3];    /* bytes 64-75: radiance from every direction, scaled */
+  float emitted_power;     /* bytes 76-79: sum of the emitters' luminance * area, scaled */
+  pg_uint samples;         /* bytes 80-83: samples a pixel */
+  pg_uint seed;            /* bytes 84-87 */
+  pg_uint jitter;          /* bytes 88-91: 0: samples at the centres of their strata */
+  pg_uint delta_lights;    /* bytes 92-95: number of point and directional lights */
+  pg_uint emitters;        /* bytes 96-99: number of emitting splats */
+  float step_delta;        /* bytes 100-103: the absolute-delta variant's delta, root cube units */
+  pg_uint pad0;
+  pg_uint pad1;
+} RenderParams;
+
+#define LIGHT_POINT 0u
+#define LIGHT_DIRECTIONAL 1u
+
+typedef struct DeltaLight {
+  float vector[3];   /* bytes 0-11: point: position, root cube; directional: unit vector towards the light */
+  pg_uint type;      /* bytes 12-15 */
+  float strength[3]; /* bytes 16-27: point: intensity [W/sr] over the cube's side squared; directional: irradiance [W/m2]; scaled */
+  float cumulative;  /* bytes 28-31: share of this and all earlier lights in the total, (0,1]; the last is 1 */
+} DeltaLight;
+
+typedef struct Emitter {
+  pg_uint point;    /* bytes 0-3: index into the point pool */
+  float cumulative; /* bytes 4-7: share of this and all earlier emitters in the emitted power; the last is 1 */
+} Emitter;
+
+typedef struct Material {
+  float emission[3]; /* bytes 0-11: radiance of the front side, scaled */
+  float pad0;
+} Material;
+
+/* One pixel of the film, FILM_CHANNELS scalars. Radiances are scaled means over the pixel's samples; Z, N, P and albedo
+ * are means over the samples that hit a splat. */
+#define FILM_DIRECT 0     /* 3: emission, environment and direct light */
+#define FILM_COVERAGE 3   /* share of samples that hit a splat */
+#define FILM_ALBEDO 4     /* 3 */
+#define FILM_DEPTH 7      /* distance from the camera plane, root cube units */
+#define FILM_NORMAL 8     /* 3 */
+#define FILM_POSITION 11  /* 3: root cube */
+#define FILM_BACK_FACE 14 /* share of samples that met a back face */
+#define FILM_RAYS 15      /* rays traced for the pixel, eye and shadow */
+#define FILM_SUMS 16      /* channels above are sums over samples; below not */
+#define FILM_POINT 16     /* as_float(index into the point pool) of the first sample that hit, or FILM_NO_POINT */
+#define FILM_CHANNELS 17
+#define FILM_NO_POINT 0xffffffffu
+
+#endif

@@ -1,0 +1,48 @@
+/* Given rays through the chosen traversal: for tests, probes and later stages.
+ * NDRange: 1-D, one work-item a ray, padded; work-items past `count` do nothing. */
+#include "lib/traversal.cl"
+
+inline Ray ray_of_query(const __global RayQuery* q, float step_delta) {
+  Ray ray;
+  ray.origin = load3(q->origin);
+  ray.direction = load3(q->direction);
+  ray.t_min = q->t_min;
+  ray.t_max = q->t_max;
+#ifdef STEP_ABSOLUTE
+  ray.step_delta = step_delta;
+#endif
+  return ray;
+}
+
+/* answers[i] = nearest hit of rays[i]. */
+__kernel void trace_closest_rays(POOL_PARAMS, const __global RayQuery* rays, __global RayAnswer* answers, uint count,
+                                 float step_delta) {
+  const uint i = get_global_id(0);
+  if (i >= count)
+    return;
+  const Hit hit = trace_closest(POOL_ARGS, ray_of_query(rays + i, step_delta));
+  answers[i].t = hit.t;
+  answers[i].splat = hit.splat;
+}
+
+/* blocked[i] = 1 when any disc is hit in (t_min, t_max) of rays[i], else 0. Both ends are free: nothing is excluded. */
+__kernel void trace_any_rays(POOL_PARAMS, const __global RayQuery* rays, __global uint* blocked, uint count,
+                             float step_delta) {
+  const uint i = get_global_id(0);
+  if (i >= count)
+    return;
+  const ShadowEnds free_ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+  blocked[i] = trace_any(POOL_ARGS, ray_of_query(rays + i, step_delta), free_ends) ? 1u : 0u;
+}
+
+/* surfaces[i] = (normal, t) of the blended surface of rays[i], then (albedo, 1); the second w is 0 where nothing is hit. */
+__kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __global float4* surfaces, uint count,
+                                 float step_delta) {
+  const uint i = get_global_id(0);
+  if (i >= count)
+    return;
+  Surface s;
+  const bool hit = trace_blended(POOL_ARGS, ray_of_query(rays + i, step_delta), &s);
+  surfaces[2u * i] = hit ? (float4)(s.normal, s.t) : (float4)(0.0f);
+  surfaces[2u * i + 1u] = hit ? (float4)(s.albedo, 1.0f) : (float4)(0.0f);
+}

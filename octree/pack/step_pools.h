@@ -1,0 +1,33 @@
+#pragma once
+/// The thesis' form of the octree: node pool, Begin-End pool with extra splats, point pool (method.md §2); bytes as the
+/// `step` traversal reads them.
+#include "octree/build/tree.h"
+
+namespace pointgi {
+
+struct StepPools {
+  std::vector<OctreeNode> nodes;
+  std::vector<std::uint32_t> begin_end;
+  std::vector<OctreePoint> points;    ///< along the curve
+  std::vector<std::uint32_t> source;  ///< input index of each point of the pool
+  unsigned axis_bits = 1;
+  unsigned depth = 0;
+  std::size_t leaves = 0;
+  std::size_t extra_splats = 0;
+
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(OctreeNode) + begin_end.size() * sizeof(std::uint32_t) +
+           points.size() * sizeof(OctreePoint);
+  }
+};
+
+/// Packs a tree over the same splats. Throws std::length_error when the Begin-End pool outgrows 32-bit addresses.
+StepPools pack_step(View<Splat> splats, const Tree& tree);
+
+/// Checks every invariant that the traversal relies on: types, child blocks inside the pool and each used once, levels,
+/// own points inside their cell and each in one leaf, Begin-End entries ascending and closed, every leaf that a disc
+/// touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node that breaks one.
+/// Time O(n log n); the tests and debug builds call it.
+void verify(const StepPools& pools);
+
+} // namespace pointgi
