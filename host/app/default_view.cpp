@@ -53,6 +53,52 @@ Vector3d terrain_up(const Survey& s) {
   return Vector3d::Unit(thin) * (s.mean_normal[thin] > 0.0 ? 1.0 : -1.0);
 }
 
+/// What the splats would stand on with `up` (plus or minus an axis) upwards: the bounding rectangle of their lowest
+/// fiftieth, as a share of the whole's; 0 where the middle of the points is not above it.
+double footprint(const PointCloud& cloud, const Survey& s, int axis, double sign) {
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  const Vector3d extent = s.high - s.low;
+  const double floor = sign > 0.0 ? s.low[axis] : -s.high[axis];
+  double low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
+  Vector3d middle(0, 0, 0);
+  for (const Vector3d& p : cloud.position) {
+    middle += p;
+    if (sign * p[axis] > floor + 0.02 * extent[axis])
+      continue;
+    low_a = std::min(low_a, p[a]), high_a = std::max(high_a, p[a]);
+    low_b = std::min(low_b, p[b]), high_b = std::max(high_b, p[b]);
+  }
+  middle /= static_cast<double>(cloud.size());
+  if (middle[a] < low_a || middle[a] > high_a || middle[b] < low_b || middle[b] > high_b)
+    return 0.0;
+  return (high_a - low_a) * (high_b - low_b) / (extent[a] * extent[b]);
+}
+
+/// The axis that points up: whichever of y and z the points stand on most broadly; y, as models have it, when they
+/// stand on neither.
+Vector3d standing_up(const PointCloud& cloud, const Survey& s) {
+  constexpr double least = 0.2; // a foot this small is a tip that the middle happens to be above
+  Vector3d best = Vector3d::UnitY();
+  double widest = least;
+  for (const int axis : {1, 2})
+    for (const double sign : {1.0, -1.0})
+      if (const double foot = footprint(cloud, s, axis, sign); foot > widest) {
+        widest = foot;
+        best = sign * Vector3d::Unit(axis);
+      }
+  return best;
+}
+
+/// Where the front is, a little from the right: across the longer side; towards +z with y up and -y with z up, as models
+/// have it.
+Vector3d front_of(const Survey& s, const Vector3d& up) {
+  const bool y_up = std::fabs(up.y()) > 0.5;
+  const Vector3d extent = s.high - s.low, depth_axis = y_up ? Vector3d(0, 0, 1) : Vector3d(0, -1, 0);
+  const double depth = y_up ? extent.z() : extent.y();
+  const Vector3d front = depth > 1.25 * extent.x() ? Vector3d(1, 0, 0) : depth_axis;
+  return front + 0.5 * up.cross(front);
+}
+
 /// Moves the camera back along its view until the points inside the bounds fill the frame.
 void fit(Scene& scene, const PointCloud& cloud, const Survey& s, const Vector3d& from, const Vector3d& up) {
   const Vector3d back = from.normalized(), right = up.cross(back).normalized(), upward = back.cross(right);
@@ -108,8 +154,8 @@ void choose_lights(Scene& scene) {
   const Vector3d back = (scene.camera.position - scene.camera.look_at).normalized(), up = up_of(scene);
   const Vector3d right = up.cross(back).normalized();
   const Vector3d towards = (-0.55 * right + 0.7 * up + 0.75 * back).normalized();
-  scene.lights = {{DirectionalLight{-towards, Vector3d(2.2, 2.15, 2.05)}, {}}};
-  scene.environment = Vector3d(0.28, 0.30, 0.34);
+  scene.lights = {{DirectionalLight{-towards, Vector3d(2.0, 1.95, 1.85)}, {}}};
+  scene.environment = Vector3d(0.20, 0.215, 0.245);
 }
 
 std::string choose_camera(Scene& scene, const WorldSplats& splats) {
@@ -124,16 +170,15 @@ std::string choose_camera(Scene& scene, const WorldSplats& splats) {
     fit(scene, splats.cloud, s, std::sin(50.0 * degree) * up + std::cos(50.0 * degree) * level, up);
     said = "terrain, seen from above";
   } else {
-    // Standing things lack their underside: then the mean normal points up. Closed ones: y, as models have it.
-    const Vector3d& n = s.mean_normal;
-    const bool z_up = n.z() > 0.1 && n.z() > std::fabs(n.y());
-    const Vector3d up_axis = z_up ? Vector3d::UnitZ() : Vector3d::UnitY();
-    const Vector3d front = z_up ? Vector3d(0.45, -0.9, 0.0) : Vector3d(0.45, 0.0, 0.9);
-    const Vector3d open = n - n.dot(up_axis) * up_axis; // an open scan faces the way it was scanned from
-    const Vector3d level = open.norm() > 0.15 ? open : front;
-    fit(scene, splats.cloud, s, level.normalized() + 0.25 * up_axis, up_axis);
-    said = std::string(z_up ? "z" : "y") + " taken as up, seen from " +
-           (open.norm() > 0.15 ? "the side that most points face" : "the front");
+    const Vector3d up_axis = standing_up(splats.cloud, s);
+    // An open scan faces the way it was scanned from.
+    const Vector3d open = s.mean_normal - s.mean_normal.dot(up_axis) * up_axis;
+    const bool is_open = open.norm() > 0.15;
+    fit(scene, splats.cloud, s, (is_open ? open : front_of(s, up_axis)).normalized() + 0.25 * up_axis, up_axis);
+    int axis = 0;
+    up_axis.cwiseAbs().maxCoeff(&axis);
+    said = std::string(up_axis.sum() < 0.0 ? "-" : "") + "xyz"[axis] + " taken as up, seen from " +
+           (is_open ? "the side that most points face" : "the front");
   }
   const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
   char text[256];

@@ -122,8 +122,8 @@ std::vector<int> fragment_signs(const Sites& sites, const SpanningForest& forest
         Neighbour near{};
         large_sites.nearest_to(large_sites.to_local(sites.position(s)), 1, &near);
         const std::uint32_t other = base[*large_sites.points(near.site).begin()];
-        votes += sign_agreement(normals[s].cast<double>(), normals[other].cast<double>(),
-                                sites.position(other) - sites.position(s));
+        // Not mirrored: a fragment straight above a surface is noise from it more often than the back of a sheet.
+        votes += static_cast<double>(normals[s].dot(normals[other]));
       }
       if (std::abs(votes) > 0.3 * static_cast<double>(voters[t].size())) signs[t] = votes < 0 ? -1 : 1;
     }

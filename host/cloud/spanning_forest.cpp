@@ -11,6 +11,10 @@ namespace {
 
 constexpr unsigned graph_neighbours = 8;
 constexpr std::uint32_t buckets = 4096; // edge weights are sorted by counting; the square root refines the sure ones
+// Of leaving the surface against disagreeing. More keeps noisy sheets together (0.5 orients 99.9 % of a sphere whose
+// noise is half its spacing, 0.35 99.8 %), less finds the back of a plate over its nearest pairs rather than askew at
+// its rim.
+constexpr double off_surface_weight = 0.35;
 constexpr std::uint16_t no_edge = std::numeric_limits<std::uint16_t>::max();
 constexpr double pi = 3.14159265358979323846;
 
@@ -25,7 +29,7 @@ std::uint16_t edge_key(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
   const double agreement = sign_agreement(a, b, e);
   // Edges that leave the surface (to another sheet, or into noise) are the last resort.
   const double off_surface = std::abs(a.dot(e) * b.dot(e)) / std::max(e.squaredNorm(), 1e-300);
-  const double weight = std::clamp(0.5 * (1.0 - std::abs(agreement) + off_surface), 0.0, 1.0);
+  const double weight = std::min(0.5 * (1.0 - std::abs(agreement)) + off_surface_weight * off_surface, 1.0);
   const auto bucket = static_cast<std::uint32_t>(std::sqrt(weight) * (buckets - 1));
   return static_cast<std::uint16_t>(2 * bucket + (agreement < 0 ? 1 : 0));
 }

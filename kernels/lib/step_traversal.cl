@@ -155,9 +155,18 @@ inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface) {
       const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
       if (t >= t_from && t < walk.t_exit && t >= first.t && t < blend.t_end && i != first.splat)
         blend_add(&blend, t, q, normal.xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+      if (blend.back)
+        blend_add_front(&blend, ray, blend.hit, centre, normal.xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
     })
     t_from = walk.t_exit;
   } while (walk.t_exit < blend.t_end && walk_next(POOL_ARGS, &walk));
+  if (blend.back) { /* rare; a wide disc at a crease sticks out further than its leaf: look around its middle too */
+    const uint4 node = octree_descend(POOL_ARGS, blend.middle);
+    FOR_SPLATS_OF_LEAF(node, i, {
+      blend_add_front(&blend, ray, blend.middle, pool_point_texel(POINT_TEXELS * i),
+                      pool_point_texel(POINT_TEXELS * i + 1u).xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+    })
+  }
   blend_end(&blend, ray, surface);
   return true;
 }
