@@ -60,7 +60,7 @@ ExitCode run_info(const std::string& file) {
   }
   const Frame frame = frame_of(cloud);
   const std::vector<Splat> placed = place_in_cube(splats, frame);
-  const StepPools pools = build_pools(placed, {});
+  const StepPools pools = build_pools(placed, scene.octree);
   std::printf("  splats      %zu\n", cloud.size());
   std::printf("  bounds      [%.9g, %.9g, %.9g] to [%.9g, %.9g, %.9g]\n", low.x(), low.y(), low.z(), high.x(), high.y(),
               high.z());

@@ -1,5 +1,7 @@
 #include "host/app/prepare.h"
 #include "host/error.h"
+#include "octree/build/cell_key.h"
+#include <algorithm>
 
 namespace pointgi {
 
@@ -8,7 +10,11 @@ bool is_scene_file(const std::string& file) {
   return file.size() >= end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
 }
 
-StepPools build_pools(const std::vector<Splat>& splats, const TreeOptions& options) {
+unsigned axis_bits_of(const OctreeSettings& settings) { return settings.branching == 4 ? 2 : 1; }
+
+StepPools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings) {
+  const unsigned axis_bits = axis_bits_of(settings);
+  const TreeOptions options{axis_bits, settings.leaf_capacity, std::min(settings.max_depth, key_levels(axis_bits))};
   StepPools pools = pack_step(splats, build_tree(splats, options));
 #ifndef NDEBUG
   verify(pools);

@@ -166,7 +166,7 @@ ExitCode run_render(const RenderOptions& options) {
   stop_if_asked();
 
   stages.start("octree");
-  const StepPools pools = build_pools(placed, {});
+  const StepPools pools = build_pools(placed, scene.octree);
   placed = {};
   std::vector<std::uint32_t> ids(pools.source.size());
   for (std::size_t k = 0; k < ids.size(); ++k)
@@ -175,7 +175,7 @@ ExitCode run_render(const RenderOptions& options) {
   stop_if_asked();
   skip_indirect_stages(scene, stages);
 
-  const TraversalVariant variant;
+  const TraversalVariant variant{scene.traversal, axis_bits_of(scene.octree)};
   const DevicePools on_device = upload_pools(session, pools, variant.storage);
   const DeviceLighting lighting = device_lighting(scene, frame, pools.points);
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window, film_channels(),

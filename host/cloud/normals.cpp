@@ -10,8 +10,10 @@ namespace {
 
 constexpr unsigned pca_neighbours = 18;  // with the weights below about as smooth as 12 equal ones
 constexpr unsigned wide_neighbours = 72; // four scan lines, where 18 are all on one
-constexpr double flat_enough = 0.01;     // ratio of the middle to the largest variance under which points are a line
-constexpr double on_a_line = 1e-6;       // ... and under which nothing tells one direction across it from another
+constexpr float another_piece =
+    4.0f; // times the median distance of the neighbours: beyond, a fragment ends and something else is
+constexpr double flat_enough = 0.01; // ratio of the middle to the largest variance under which points are a line
+constexpr double on_a_line = 1e-6;   // ... and under which nothing tells one direction across it from another
 
 // Across an edge the plane through all neighbours lies slanted. What tells is its roughness: root mean square distance
 // from the plane over the distance of the last neighbour.
@@ -65,13 +67,21 @@ Eigen::Vector3d across(const Eigen::Vector3d& line) {
   return (unit - line * line[axis] / line.squaredNorm()).normalized();
 }
 
+unsigned neighbours_in_piece(const Sites& sites, std::uint32_t site, unsigned k, Neighbour* neighbours) {
+  unsigned count = sites.nearest(site, k, neighbours);
+  const unsigned half = (count + 1) / 2;
+  while (count > half && neighbours[count - 1].distance2 > another_piece * another_piece * neighbours[half].distance2)
+    --count;
+  return count;
+}
+
 Estimate estimate(const Sites& sites, std::uint32_t site) {
   std::array<Neighbour, wide_neighbours> neighbours;
-  unsigned count = sites.nearest(site, pca_neighbours, neighbours.data());
+  unsigned count = neighbours_in_piece(sites, site, pca_neighbours, neighbours.data());
   if (count == 0) return {};
   Plane plane = fit_plane(sites, site, neighbours.data(), count);
-  if (plane.middle_to_large < flat_enough && count == pca_neighbours) {
-    count = sites.nearest(site, wide_neighbours, neighbours.data());
+  if (plane.middle_to_large < flat_enough && sites.size() > pca_neighbours + 1) {
+    count = neighbours_in_piece(sites, site, wide_neighbours, neighbours.data());
     plane = fit_plane(sites, site, neighbours.data(), count);
   }
   Eigen::Vector3d normal = plane.normal;

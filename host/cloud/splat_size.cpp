@@ -22,6 +22,8 @@ constexpr double opposite_cosine = -0.3;
 // more are fetched; 160 see across a density step of 16 and tell it from a boundary.
 constexpr std::array<unsigned, 3> neighbour_stages = {20, 56, 160};
 constexpr double longest_reach = 3.0; // of a cell on its open side, in spacings; radius <= 3.6 spacings follows
+constexpr float largest_step =
+    3.0f; // of the spacing, that cells reach across (with longest_reach: a 16-fold density step)
 constexpr double widest_gap = 125.0 / 180.0 * pi; // between neighbours; wider and the surface ends there
 constexpr unsigned alike_candidates = 8;          // points looked at, of those that share a site
 
@@ -91,7 +93,9 @@ public:
         for (unsigned j = 0; j < candidates_; ++j)
           polygon.cut(candidate_[j].offset);
         const double reach = std::sqrt(polygon.reach2());
-        if (!polygon.open() && 2.0 * reach <= known) return {polygon.area(), reach, false};
+        // Exact; but a cell that reaches over to the next island of points is not meant, however exact.
+        if (!polygon.open() && 2.0 * reach <= known && reach <= longest_reach * static_cast<double>(spacing_[site_]))
+          return {polygon.area(), reach, false};
       }
       if (last) return bounded_cell(count);
     }
@@ -139,15 +143,30 @@ private:
     const double own = spacing_[site_];
     // An isolated site lies farther off than its spacing, which is its neighbours', can explain.
     const bool isolated = count > 0 && spacing_of(near_.data(), count) > spacing_[site_] * 1.001f;
+    // A point on the dense side of a step, or just beside it, has a cell as large as those of the sparse side; but no
+    // straggler among the candidates may stretch it further.
     double largest = own;
-    if (!isolated)
+    if (!isolated && candidates_ > 0) {
       for (unsigned j = 0; j < candidates_; ++j)
-        largest = std::max(largest, static_cast<double>(candidate_[j].spacing));
-    CellPolygon polygon(longest_reach * largest);
+        ordered_[j] = candidate_[j].spacing;
+      const auto middle = ordered_.begin() + (candidates_ - 1) / 2;
+      std::nth_element(ordered_.begin(), middle, ordered_.begin() + candidates_);
+      const float most = *std::max_element(middle, ordered_.begin() + candidates_);
+      largest = std::max(own, static_cast<double>(std::min(most, largest_step * *middle)));
+    }
+    CellPolygon polygon = bounded_polygon(longest_reach * largest, own, isolated);
+    const bool open = polygon.open();
+    if (open && largest > own)
+      polygon = bounded_polygon(longest_reach * own, own, isolated); // not filled by neighbours either
+    return {polygon.area(), std::sqrt(polygon.reach2()), isolated || open};
+  }
+
+  CellPolygon bounded_polygon(double reach, double own, bool isolated) {
+    CellPolygon polygon(reach);
     for (unsigned j = 0; j < candidates_; ++j)
       polygon.cut(candidate_[j].offset);
-    close_gaps(polygon, 2.0 * longest_reach * largest, own, isolated);
-    return {polygon.area(), std::sqrt(polygon.reach2()), isolated || polygon.open()};
+    close_gaps(polygon, 2.0 * reach, own, isolated);
+    return polygon;
   }
 
   /// Where no neighbour within `view` is seen over a wide angle the surface ends: neighbours are made up one local
@@ -196,6 +215,7 @@ private:
   std::array<Neighbour, neighbour_stages.back()> near_;
   std::array<Candidate, neighbour_stages.back()> candidate_;
   std::array<double, neighbour_stages.back() + 1> angle_;
+  std::array<float, neighbour_stages.back()> ordered_;
 };
 
 /// How many points at a site share the cell of one of them: those on the same side of the surface. A leaf that is

@@ -1,20 +1,13 @@
 #pragma once
 /// The choices that make a kernel variant, and the one place where -D options are composed.
+#include "host/scene/scene.h"
 #include <string>
 
 namespace pointgi {
 
-enum class PoolStorage { buffer, image1d_buffer, image2d };
-enum class Stepping {
-  exact,         ///< integer cells; the default
-  absolute_delta ///< the thesis' absolute delta, for trade measurements (method.md §6)
-};
-
-struct TraversalVariant {
-  PoolStorage storage = PoolStorage::buffer;
-  Stepping stepping = Stepping::exact;
-  unsigned axis_bits = 1;    ///< log2 N of the tree
-  double step_delta = 0.05;  ///< world units; absolute_delta only
+/// The user's settings and what the kernels must know of the tree.
+struct TraversalVariant : TraversalSettings {
+  unsigned axis_bits = 1; ///< log2 N of the tree
 };
 
 /// What the scene has, so that kernels are built without what it has not (method.md §7).

@@ -56,7 +56,7 @@ Scene scene_of_document(const toml::table& document, const std::string& path, co
   const TableReader root(document, path, "");
   check_version(root);
   root.allow_only({"version", "up", "render", "camera", "material", "cloud", "shape", "light", "environment",
-                   "radiosity", "caustics"});
+                   "radiosity", "caustics", "octree", "traversal"});
 
   Scene scene;
   scene.file = path;
@@ -71,6 +71,8 @@ Scene scene_of_document(const toml::table& document, const std::string& path, co
   load_environment(root, scene.environment);
   load_radiosity(root, scene.radiosity);
   load_caustics(root, scene.caustics);
+  load_octree(root, scene.octree);
+  load_traversal(root, scene.traversal);
 
   if (scene.clouds.empty() && scene.shapes.empty())
     throw Error(ExitCode::input,

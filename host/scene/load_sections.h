@@ -14,6 +14,8 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera);
 
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity);
 void load_caustics(const TableReader& root, CausticSettings& caustics);
+void load_octree(const TableReader& root, OctreeSettings& octree);
+void load_traversal(const TableReader& root, TraversalSettings& traversal);
 void load_environment(const TableReader& root, Vector3d& radiance);
 
 /// Appends to `warnings` where a key will have no effect.

@@ -44,7 +44,7 @@ void load_render(const TableReader& root, RenderSettings& render) {
 void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
   const std::optional<TableReader> table = root.table("camera");
   if (!table) return;
-  table->allow_only({"position", "look_at", "fov_deg"});
+  table->allow_only({"position", "look_at", "fov_deg", "up"});
   camera.place = table->place();
   camera.chosen = true;
   camera.position = table->need_vector3("position", limits::coordinate);
@@ -54,6 +54,14 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
   const Vector3d view = camera.look_at - camera.position;
   if (view.norm() <= limits::same_point * std::max(camera.look_at.norm(), camera.position.norm()))
     table->fail("look_at", "expected a point other than camera.position, found the same; the camera has no direction");
+  if (table->has("up")) {
+    camera.up = table->need_vector3("up", limits::coordinate);
+    if (camera.up->norm() == 0.0) table->fail("up", "expected a direction, found [0, 0, 0]");
+    camera.up->normalize();
+    if (view.normalized().cross(*camera.up).norm() < limits::parallel_sine)
+      table->fail("up", "the camera looks along its up direction, so that no side of the picture is up; choose another");
+    return;
+  }
   const Vector3d upright = up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();
   if (view.normalized().cross(upright).norm() < limits::parallel_sine)
     table->fail("look_at", std::string("the camera looks along up = \"") + (up == UpAxis::y ? "y" : "z") +
@@ -83,6 +91,33 @@ void load_caustics(const TableReader& root, CausticSettings& caustics) {
   if (const auto photons = table->integer("photons", limits::photons)) caustics.photons = *photons;
   if (const auto gather = table->integer("gather_k", limits::gather_k)) caustics.gather_k = static_cast<int>(*gather);
   if (const auto power = table->choice("power", {"unbiased", "equal"})) caustics.power = *power;
+}
+
+void load_octree(const TableReader& root, OctreeSettings& octree) {
+  const std::optional<TableReader> table = root.table("octree");
+  if (!table) return;
+  table->allow_only({"branching", "leaf_capacity", "max_depth"});
+  if (const auto branching = table->integer("branching", {2, 4})) {
+    if (*branching == 3) table->fail("branching", "expected 2 or 4, found 3");
+    octree.branching = static_cast<unsigned>(*branching);
+  }
+  if (const auto capacity = table->integer("leaf_capacity", limits::leaf_capacity))
+    octree.leaf_capacity = static_cast<unsigned>(*capacity);
+  if (const auto depth = table->integer("max_depth", limits::octree_depth))
+    octree.max_depth = static_cast<unsigned>(*depth);
+}
+
+void load_traversal(const TableReader& root, TraversalSettings& traversal) {
+  const std::optional<TableReader> table = root.table("traversal");
+  if (!table) return;
+  table->allow_only({"storage", "stepping", "step_delta"});
+  if (const auto storage = table->choice("storage", {"buffer", "image1d_buffer", "image2d"}))
+    traversal.storage = *storage == "buffer"           ? PoolStorage::buffer
+                        : *storage == "image1d_buffer" ? PoolStorage::image1d_buffer
+                                                       : PoolStorage::image2d;
+  if (const auto stepping = table->choice("stepping", {"exact", "absolute_delta"}))
+    traversal.stepping = *stepping == "exact" ? Stepping::exact : Stepping::absolute_delta;
+  if (const auto delta = table->number("step_delta", limits::length)) traversal.step_delta = *delta;
 }
 
 void load_environment(const TableReader& root, Vector3d& radiance) {

@@ -47,7 +47,7 @@ const char* name_of(MaterialType type);
 struct MaterialSettings {
   std::string name;
   MaterialType type = MaterialType::diffuse;
-  std::optional<Vector3d> albedo; ///< linear unless colour_space says sRGB; absent: the points' colours
+  std::optional<Vector3d> albedo; ///< always linear; absent: the points' colours
   Vector3d emission{0, 0, 0};     ///< radiance [W/m²/sr] of the front side
   Vector3d reflectance{1, 1, 1};  ///< mirror
   double ior = 1.5;               ///< glass
@@ -130,6 +130,26 @@ struct CausticSettings {
   std::optional<SourcePlace> place;
 };
 
+/// Form of the octree; the picture does not depend on it beyond rounding.
+struct OctreeSettings {
+  unsigned branching = 2;     ///< N of the N^d tree: 2 or 4
+  unsigned leaf_capacity = 32;///< splats, own and extra, that a cell may list undivided
+  unsigned max_depth = 21;    ///< levels below the root; N = 4 has 10 at most
+};
+
+enum class PoolStorage { buffer, image1d_buffer, image2d };
+enum class Stepping {
+  exact,         ///< integer cells; the default
+  absolute_delta ///< the thesis' absolute delta, for trade measurements (method.md §6)
+};
+
+/// Kernel variant of the traversal.
+struct TraversalSettings {
+  PoolStorage storage = PoolStorage::buffer;
+  Stepping stepping = Stepping::exact;
+  double step_delta = 0.05; ///< world units; absolute_delta only
+};
+
 struct Scene {
   std::string file;
   UpAxis up = UpAxis::y;
@@ -142,6 +162,8 @@ struct Scene {
   Vector3d environment{0, 0, 0}; ///< radiance [W/m²/sr] from every direction
   RadiositySettings radiosity;
   CausticSettings caustics;
+  OctreeSettings octree;
+  TraversalSettings traversal;
   std::vector<std::string> warnings;
 };
 

@@ -10,7 +10,7 @@ namespace pointgi {
 
 struct TreeOptions {
   unsigned axis_bits = 1;      ///< log2 N: 1 (N = 2) or 2 (N = 4)
-  unsigned leaf_capacity = 8;  ///< a cell that lists no more splats than this, own and extra, is a leaf
+  unsigned leaf_capacity = 32; ///< a cell that lists no more splats than this, own and extra, is a leaf
   unsigned max_depth = 21;     ///< levels below the root; at most key_levels(axis_bits)
 };
 

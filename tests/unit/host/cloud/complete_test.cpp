@@ -1,8 +1,7 @@
 #include "host/cloud/complete.h"
 #include "host/cloud/drop_points.h"
-#include "host/cloud/ply.h"
 #include "host/error.h"
-#include "tests/support/scans.h"
+#include "tests/unit/host/cloud/completed_cloud.h"
 #include "tests/unit/host/cloud/sampled_surfaces.h"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -19,43 +18,10 @@ namespace {
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-CloudReport complete(PointCloud& cloud, const CompleteOptions& options = {}) {
-  CloudReport report;
-  complete_cloud(cloud, options, report);
-  return report;
-}
-
 CompleteOptions with(NormalSource normals) {
   CompleteOptions options;
   options.normals = normals;
   return options;
-}
-
-/// What complete_cloud() promises of every cloud.
-void check_promises(const PointCloud& cloud) {
-  REQUIRE(cloud.normal.size() == cloud.size());
-  REQUIRE(cloud.radius.size() == cloud.size());
-  REQUIRE(cloud.area.size() == cloud.size());
-  std::size_t bad = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    bad += !(std::abs(cloud.normal[i].norm() - 1) < 1e-5f); // float rounding
-    bad += !(cloud.radius[i] > 0 && std::isfinite(cloud.radius[i]));
-    bad += !(cloud.area[i] > 0 && std::isfinite(cloud.area[i]));
-  }
-  CHECK(bad == 0);
-}
-
-/// Share of points whose normal is on the same side as `truth`'s.
-double agreement(const PointCloud& cloud, const std::vector<Vector3f>& truth) {
-  std::size_t agree = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    agree += cloud.normal[i].dot(truth[i]) > 0;
-  return static_cast<double>(agree) / static_cast<double>(cloud.size());
-}
-
-bool warns_of(const CloudReport& report, const std::string& word) {
-  return std::any_of(report.warnings.begin(), report.warnings.end(),
-                     [&](const std::string& text) { return text.find(word) != std::string::npos; });
 }
 
 PointCloud without_normals(PointCloud cloud) {
@@ -79,38 +45,6 @@ PointCloud ball_mesh(int rings) {
       cloud.triangle.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
   return cloud;
-}
-
-double mesh_volume(const PointCloud& cloud) {
-  double volume = 0;
-  for (const auto& t : cloud.triangle)
-    volume += cloud.position[t[0]].dot(cloud.position[t[1]].cross(cloud.position[t[2]])) / 6;
-  return volume;
-}
-
-double mesh_area(const PointCloud& cloud) {
-  double area = 0;
-  for (const auto& t : cloud.triangle)
-    area += (cloud.position[t[1]] - cloud.position[t[0]]).cross(cloud.position[t[2]] - cloud.position[t[0]]).norm() / 2;
-  return area;
-}
-
-/// A third of the sum of A n.x: the volume that the normals and areas enclose.
-double splat_volume(const PointCloud& cloud) {
-  double volume = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    volume += static_cast<double>(cloud.area[i]) * cloud.normal[i].cast<double>().dot(cloud.position[i]) / 3;
-  return volume;
-}
-
-std::optional<PointCloud> scan(const std::string& name) {
-  const auto path = scan_path(name);
-  if (!path) {
-    WARN("skipped: no scan " + name);
-    return std::nullopt;
-  }
-  CloudReport report;
-  return read_ply(*path, report);
 }
 
 } // namespace
@@ -378,70 +312,5 @@ TEST_CASE("the same bits on any number of threads, the same splats at any place 
       worst = std::max(
           worst, std::abs(static_cast<double>(cloud.radius[i]) / static_cast<double>(first.radius[i]) / scale - 1));
     CHECK(worst < 1e-4);
-  }
-}
-
-TEST_CASE("bunny: faces with holes, and points in no face", "[cloud][complete][scans]") {
-  auto cloud = scan("bunny.ply");
-  if (!cloud) return;
-  const CloudReport report = complete(*cloud);
-  check_promises(*cloud);
-  CHECK(report.normals_from == "faces");
-  CHECK(warns_of(report, "1113 of 35947"));
-  // Cells reach half a spacing over the rims of its holes, and the points in no face stand for surface that no triangle
-  // has: measured +1.7 %.
-  CHECK(total(cloud->area) == Approx(mesh_area(*cloud)).epsilon(0.03));
-  CHECK(splat_volume(*cloud) > 0);
-}
-
-TEST_CASE("horse: normals and winding point inwards", "[cloud][complete][scans]") {
-  auto cloud = scan("horse.ply");
-  if (!cloud) return;
-  CHECK(mesh_volume(*cloud) < 0);
-  const double volume = -mesh_volume(*cloud);
-  const CloudReport report = complete(*cloud);
-  check_promises(*cloud);
-  CHECK(report.normals_from == "file, flipped");
-  CHECK(mesh_volume(*cloud) == Approx(volume));
-  CHECK(splat_volume(*cloud) == Approx(volume).epsilon(0.02));          // splats are as large as the mesh, to 1 %
-  CHECK(total(cloud->area) == Approx(mesh_area(*cloud)).epsilon(0.01)); // even and closed; measured 0.05 %
-
-  // Its points alone: estimated normals agree with the mesh's.
-  PointCloud bare;
-  bare.position = cloud->position;
-  CHECK(complete(bare).normals_from == "estimated (outwards)");
-  CHECK(agreement(bare, cloud->normal) > 0.99); // the ears are thinner than their spacing
-}
-
-TEST_CASE("kinect: a depth image from the origin", "[cloud][complete][scans]") {
-  auto cloud = scan("kinect_region_growing_rgb.ply");
-  if (!cloud) return;
-  CHECK(complete(*cloud).normals_from == "estimated (towards the sensor at the origin)");
-  check_promises(*cloud);
-  std::size_t away = 0;
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    away += cloud->normal[i].cast<double>().dot(cloud->position[i].normalized()) > 1e-5; // float, seen edge on
-  CHECK(away == 0);
-}
-
-TEST_CASE("autzen: airborne lidar faces upwards", "[cloud][complete][scans]") {
-  auto cloud = scan("autzen_trim.ply");
-  if (!cloud) return;
-  CHECK(complete(*cloud).normals_from == "estimated (upwards along z)");
-  check_promises(*cloud);
-  const auto up =
-      std::count_if(cloud->normal.begin(), cloud->normal.end(), [](const Vector3f& n) { return n.z() > 0; });
-  CHECK(static_cast<double>(up) / static_cast<double>(cloud->size()) > 0.9); // measured 0.93; crowns of trees lean
-}
-
-TEST_CASE("pond and lion: open scans keep their normals", "[cloud][complete][scans]") {
-  for (const std::string name : {"pond.ply", "lion_takanawa.ply"}) {
-    auto cloud = scan(name);
-    if (!cloud) continue;
-    const std::vector<Vector3f> given = cloud->normal;
-    CHECK(complete(*cloud).normals_from == "file");
-    check_promises(*cloud);
-    REQUIRE(cloud->size() == given.size());
-    CHECK(agreement(*cloud, given) == 1);
   }
 }

@@ -1,0 +1,105 @@
+#include "host/passes/device_pools.h"
+#include "octree/ref/descend.h"
+#include "shared/render_types.h"
+#include "shared/traversal_types.h"
+#include "tests/support/clouds.h"
+#include "tests/support/device.h"
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <random>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+TEST_CASE("device and host lay the shared structs out alike") {
+  Session& device = session();
+  const std::vector<std::size_t> host = {
+      sizeof(OctreeNode),
+      offsetof(OctreeNode, address),
+      offsetof(OctreeNode, extra),
+      offsetof(OctreeNode, count),
+      sizeof(OctreePoint),
+      offsetof(OctreePoint, radius),
+      offsetof(OctreePoint, normal),
+      offsetof(OctreePoint, material),
+      offsetof(OctreePoint, colour),
+      offsetof(OctreePoint, area),
+      sizeof(Camera),
+      sizeof(RenderParams),
+      offsetof(RenderParams, environment),
+      offsetof(RenderParams, samples),
+      offsetof(RenderParams, emitters),
+      offsetof(RenderParams, step_delta),
+      sizeof(DeltaLight),
+      offsetof(DeltaLight, strength),
+      offsetof(DeltaLight, cumulative),
+      sizeof(Emitter),
+      sizeof(Material),
+      sizeof(RayQuery),
+      sizeof(RayAnswer),
+  };
+  const auto sizes = device.allocate<cl_uint>(host.size());
+  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_layout");
+  device.launch(kernel, LaunchShape{{1, 1}, {1, 1}}, sizes);
+  const auto found = device.download(sizes, host.size());
+  for (std::size_t i = 0; i < host.size(); ++i) {
+    CAPTURE(i);
+    CHECK(found[i] == host[i]);
+  }
+}
+
+TEST_CASE("the device descends as the host does, in every storage and branching") {
+  TraversalVariant variant;
+  variant.storage = GENERATE(PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d);
+  variant.axis_bits = GENERATE(1u, 2u);
+  const auto splats = mixed_splats();
+  const StepPools pools = pack_step(splats, build_tree(splats, {variant.axis_bits, 4, 21 / variant.axis_bits}));
+  std::mt19937 g(3);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  std::vector<cl_float4> positions(20'000);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (int a = 0; a < 3; ++a) // half of them on corners of cells
+      positions[i].s[a] = i % 2 == 0 ? std::min(unit(g), 0.99999994f) : std::floor(64.0f * unit(g)) / 64.0f;
+  Session& device = session();
+  const DevicePools on_device = upload_pools(device, pools, variant.storage);
+  const auto in = device.upload(positions);
+  const auto out = device.allocate<OctreeNode>(positions.size());
+  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(variant), "probe_descent");
+  device.launch(kernel, LaunchShape::line(positions.size()), on_device.nodes, on_device.begin_end, on_device.points, in,
+                out, static_cast<cl_uint>(positions.size()));
+  const auto found = device.download(out, positions.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const OctreeNode truth = descend(pools, {positions[i].s[0], positions[i].s[1], positions[i].s[2]});
+    different += truth.header != found[i].header || truth.address != found[i].address || truth.count != found[i].count;
+  }
+  CHECK(different == 0);
+}
+
+TEST_CASE("random numbers are the published hash's") {
+  // pcg4d as printed by Jarzynski and Olano (JCGT 9(3), 2020), computed here independently of the kernel.
+  const auto truth = [](std::uint32_t seed) {
+    std::uint32_t v[4] = {seed, seed, seed, seed};
+    for (std::uint32_t& c : v)
+      c = c * 1664525u + 1013904223u;
+    const auto mix = [&] {
+      v[0] += v[1] * v[3];
+      v[1] += v[2] * v[0];
+      v[2] += v[0] * v[1];
+      v[3] += v[1] * v[2];
+    };
+    mix();
+    for (std::uint32_t& c : v)
+      c ^= c >> 16;
+    mix();
+    return std::vector<std::uint32_t>(v, v + 4);
+  };
+  Session& device = session();
+  const cl_uint count = 256;
+  const auto values = device.allocate<cl_uint4>(count);
+  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_rng");
+  device.launch(kernel, LaunchShape::line(count), values, count);
+  const auto found = device.download(values, count);
+  for (cl_uint i = 0; i < count; ++i)
+    REQUIRE(std::vector<std::uint32_t>(found[i].s, found[i].s + 4) == truth(i));
+}

@@ -1,0 +1,58 @@
+#include "octree/build/tree.h"
+#include "octree/pack/step_pools.h"
+#include "tests/support/clouds.h"
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+TEST_CASE("every tree obeys the invariants: branching, capacity, depth") {
+  const unsigned axis_bits = GENERATE(1u, 2u), capacity = GENERATE(1u, 8u, 64u), depth = GENERATE(0u, 1u, 6u, 21u);
+  const auto splats = mixed_splats();
+  const TreeOptions options{axis_bits, capacity, std::min(depth, 21u / axis_bits)};
+  const Tree tree = build_tree(splats, options);
+  CHECK(tree.depth <= options.max_depth);
+  std::vector<std::uint32_t> order = tree.order;
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    REQUIRE(order[i] == i);
+  verify(pack_step(splats, tree));
+}
+
+TEST_CASE("degenerate clouds end with bounded depth") {
+  std::vector<Splat> splats;
+  SECTION("none") {}
+  SECTION("one") { splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f)}; }
+  SECTION("two in one place") { splats.assign(2, make_splat(0.3f, 0.3f, 0.3f, 0, 0, 1, 0.01f)); }
+  SECTION("100,000 tiny ones in one place") { splats.assign(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 1, 1e-9f)); }
+  SECTION("a line") {
+    for (int i = 0; i < 500; ++i)
+      splats.push_back(make_splat(0.1f + 0.0016f * static_cast<float>(i), 0.5f, 0.5f, 0, 0, 1, 0.001f));
+  }
+  SECTION("a dense dot and one far away") {
+    splats = sphere_splats(2000, 1e-6f);
+    splats.push_back(make_splat(0.01f, 0.01f, 0.01f, 0, 0, 1, 1e-7f));
+  }
+  const Tree tree = build_tree(splats, {1, 8, 21});
+  CHECK(tree.depth <= 21);
+  // A chain of 21 levels has 8 nodes a level; beyond that nodes must pay for themselves.
+  CHECK(tree.nodes.size() < 400 + 40 * splats.size());
+  verify(pack_step(splats, tree));
+}
+
+TEST_CASE("discs as large as the cells do not make the tree grow without end") {
+  auto splats = random_splats(500, 4);
+  for (Splat& s : splats)
+    s.radius = 0.12f;
+  const Tree tree = build_tree(splats, {1, 1, 21});
+  // Dividing stops paying when a disc spans its cell: a few listings a splat for each halving down to there.
+  CHECK(tree.extra.size() < 200 * splats.size());
+}
+
+TEST_CASE("options out of range are refused") {
+  CHECK_THROWS_AS(build_tree({}, {3, 8, 5}), std::invalid_argument);
+  CHECK_THROWS_AS(build_tree({}, {1, 0, 5}), std::invalid_argument);
+  CHECK_THROWS_AS(build_tree({}, {1, 8, 22}), std::invalid_argument);
+  CHECK_THROWS_AS(build_tree({}, {2, 8, 11}), std::invalid_argument);
+}
