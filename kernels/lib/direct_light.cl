@@ -33,7 +33,9 @@ inline bool in_light(POOL_PARAMS, const Surface* s, float3 direction, float dist
   Ray ray;
   ray.origin = s->position;
   ray.direction = direction;
-  ray.t_min = 1e-6f; /* a few float steps of a coordinate in [0,1) */
+  /* A little behind the surface: where two walls meet, rounding may put the point a few float steps beyond the other
+   * wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
+  ray.t_min = -4e-6f;
   ray.t_max = distance;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;

@@ -1,0 +1,145 @@
+/// The program keeps its promises at the extremes of truths.md §2.
+#include "tests/support/render.h"
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+std::string numbers(double x, double y, double z) {
+  char text[120];
+  std::snprintf(text, sizeof text, "[%.17g, %.17g, %.17g]", x, y, z);
+  return text;
+}
+
+std::string number(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+/// A ball on a floor under a point light and a lamp, the whole scaled by s about the origin and then moved by m on
+/// every axis; the point light's power goes with s², so that the picture stays the same.
+std::string ball_scene(double s, double m = 0.0, double power = 30.0, const std::string& more = "") {
+  const auto at = [&](double x, double y, double z) { return numbers(s * x + m, s * y + m, s * z + m); };
+  const auto along = [&](double x, double y, double z) { return numbers(s * x, s * y, s * z); };
+  return "version = 1\n[render]\nsize = [64, 48]\nspp = 32\n" + more + "[camera]\nposition = " + at(0.3, 1.2, 3.0) +
+         "\nlook_at = " + at(0.0, 0.4, 0.0) +
+         "\nfov_deg = 40.0\n"
+         "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
+         "[[shape]]\ntype = \"sphere\"\ncentre = " + at(0.0, 0.5, 0.0) + "\nradius = " + number(0.5 * s) + "\nspacing = " +
+         number(0.04 * s) + "\nmaterial = \"grey\"\n[[shape]]\ntype = \"quad\"\ncorner = " + at(-1.5, 0.0, -1.5) +
+         "\nedge_u = " + along(0.0, 0.0, 3.0) + "\nedge_v = " + along(3.0, 0.0, 0.0) + "\nspacing = " + number(0.05 * s) +
+         "\nmaterial = \"grey\"\n[[light]]\ntype = \"point\"\nposition = " + at(0.7, 1.9, 0.8) + "\npower_w = " +
+         numbers(power * s * s, power * s * s, power * s * s) + "\n";
+}
+
+/// Share of the samples' weight that changed: mean |a - b| over mean b. A rounded coordinate may move a sample across a
+/// shadow's edge, which a mean forgives and a largest difference does not.
+double mean_difference(const Picture& a, const Picture& b) {
+  double sum = 0.0;
+  const auto &x = a.channels.at("R"), &y = b.channels.at("R");
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += std::fabs(static_cast<double>(x[i]) - y[i]);
+  return sum / static_cast<double>(x.size()) / mean(b, "R");
+}
+
+} // namespace
+
+TEST_CASE("the same scene at 1e-6 and 1e6 times the size is the same picture") {
+  const Picture truth = render_text(ball_scene(1.0));
+  CHECK(mean(truth, "R") > 0.02);
+  for (const double s : {1e-6, 1e-3, 37.0, 1e6})
+    CHECK(mean_difference(render_text(ball_scene(s)), truth) < 1e-4);
+}
+
+TEST_CASE("moved by a million times its size it is the same picture") {
+  // Doubles leave 1e-10 of the size: what remains is the float rounding inside the root cube.
+  CHECK(mean_difference(render_text(ball_scene(1.0, 3e6)), render_text(ball_scene(1.0))) < 1e-4);
+}
+
+TEST_CASE("the picture is linear in the light's power, from 1e-20 to 1e20") {
+  const Picture truth = render_text(ball_scene(1.0));
+  for (const double factor : {1e-20, 1e-7, 3.0, 1e20}) {
+    const Picture picture = render_text(ball_scene(1.0, 0.0, 30.0 * factor));
+    double most = 0.0;
+    for (std::size_t i = 0; i < truth.channels.at("R").size(); ++i) {
+      const double a = picture.channels.at("R")[i] / factor, b = truth.channels.at("R")[i];
+      REQUIRE(std::isfinite(a));
+      most = std::max(most, std::fabs(a - b) / (b + 1e-3));
+    }
+    CHECK(most < 1e-5);
+  }
+}
+
+TEST_CASE("storage, branching, capacity and depth do not change the picture") {
+  const Picture truth = render_text(ball_scene(1.0));
+  const std::string setting =
+      GENERATE("traversal.storage=image1d_buffer", "traversal.storage=image2d", "octree.branching=4",
+               "octree.leaf_capacity=4", "octree.max_depth=0", "octree.max_depth=1", "octree.max_depth=5");
+  CAPTURE(setting);
+  const Picture picture = render_text(ball_scene(1.0), [&](RenderOptions& o) { o.overrides = {setting}; });
+  // Storage is the same arithmetic; another tree adds the weights of blended splats in another order.
+  const bool same_tree = setting.find("storage") != std::string::npos;
+  if (same_tree)
+    CHECK(picture.channels.at("R") == truth.channels.at("R"));
+  else
+    CHECK(mean_difference(picture, truth) < 1e-4);
+}
+
+TEST_CASE("the absolute delta is a variant: small it agrees, large it jumps over surfaces") {
+  const Picture truth = render_text(ball_scene(1.0));
+  const auto with_delta = [](const std::string& delta) {
+    return render_text(ball_scene(1.0), [&](RenderOptions& o) {
+      o.overrides = {"traversal.stepping=absolute_delta", "traversal.step_delta=" + delta};
+    });
+  };
+  CHECK(mean_difference(with_delta("1e-5"), truth) < 5e-3);
+  CHECK(mean_difference(with_delta("0.4"), truth) > mean_difference(with_delta("1e-5"), truth));
+}
+
+TEST_CASE("a window of the image is that part of the whole, and 1, 64 and odd sample counts work") {
+  const Picture whole = render_text(ball_scene(1.0));
+  const Picture part = render_text(ball_scene(1.0), [](RenderOptions& o) { o.pixel_bounds = "10,31,7,40"; });
+  REQUIRE(part.width == 21);
+  REQUIRE(part.height == 33);
+  for (int y = 0; y < part.height; ++y)
+    for (int x = 0; x < part.width; ++x)
+      REQUIRE(part.channels.at("R")[static_cast<std::size_t>(y) * 21 + x] ==
+              whole.channels.at("R")[static_cast<std::size_t>(y + 7) * 64 + x + 10]);
+  for (const int spp : {1, 5, 64}) {
+    const Picture picture = render_text(ball_scene(1.0), [&](RenderOptions& o) { o.spp = spp; });
+    // One sample a pixel of a smooth picture: the mean is off by its edges only.
+    CHECK(mean(picture, "R") == Approx(mean(whole, "R")).epsilon(0.05));
+  }
+  const Picture sliver = render_text(ball_scene(1.0), [](RenderOptions& o) { o.size = "1x4096"; });
+  CHECK(sliver.height == 4096);
+  CHECK(render_text(ball_scene(1.0), [](RenderOptions& o) { o.size = "1x1"; }).width == 1);
+}
+
+TEST_CASE("a seed gives the same bits again, another seed other ones") {
+  const Picture a = render_text(ball_scene(1.0)), b = render_text(ball_scene(1.0));
+  const Picture c = render_text(ball_scene(1.0), [](RenderOptions& o) { o.seed = 2; });
+  CHECK(a.channels.at("R") == b.channels.at("R"));
+  CHECK(a.channels.at("R") != c.channels.at("R"));
+}
+
+TEST_CASE("lights on a surface and in the camera give finite pixels") {
+  const std::string light =
+      GENERATE("position = [0.0, 0.0, 0.0]", "position = [0.0, 1.0, 0.0]", "position = [0.3, 1.2, 3.0]", "position = [0.0, 0.5, 0.0]");
+  const Picture picture = render_text(ball_scene(1.0) + "[[light]]\ntype = \"point\"\n" + light + "\npower_w = [9.0, 9.0, 9.0]\n");
+  for (const float value : picture.channels.at("R"))
+    REQUIRE(std::isfinite(value));
+}
+
+TEST_CASE("ten thousand lights") {
+  std::string lights;
+  for (int i = 0; i < 10'000; ++i)
+    lights += "[[light]]\ntype = \"point\"\nposition = [" + number(0.0002 * i - 1.0) + ", 2.0, 0.5]\npower_w = [0.01, 0.01, 0.01]\n";
+  const Picture picture = render_text(ball_scene(1.0, 0.0, 0.0) + lights);
+  CHECK(mean(picture, "R") > 0.01);
+  for (const float value : picture.channels.at("R"))
+    REQUIRE(std::isfinite(value));
+}
