@@ -1,5 +1,6 @@
 #pragma once
-/// The program's commands. Each returns the exit code and throws Error otherwise; results go to stdout, the log to stderr.
+/// The program's commands. Each returns the exit code and throws Error otherwise; results go to stdout, the log to
+/// stderr.
 #include "host/error.h"
 #include <optional>
 #include <string>
@@ -8,11 +9,11 @@
 namespace pointgi {
 
 struct RenderOptions {
-  std::string input;                 ///< scene.toml or cloud
-  std::string output;                ///< .exr; empty: the input's name in the working directory
-  std::string size;                  ///< "WxH"
+  std::string input;  ///< scene.toml or cloud
+  std::string output; ///< .exr; empty: the input's name in the working directory
+  std::string size;   ///< "WxH"
   std::optional<int> spp;
-  std::string quality = "normal";    ///< draft: a quarter of the samples, high: four times
+  std::string quality = "normal"; ///< draft: a quarter of the samples, high: four times
   std::optional<double> exposure;
   std::string integrator = "pointgi";
   std::string device;
@@ -20,7 +21,7 @@ struct RenderOptions {
   std::vector<std::string> overrides; ///< key.path=value
   std::string stats_file;
   std::string trace_file;
-  std::string pixel_bounds;          ///< "x0,x1,y0,y1"
+  std::string pixel_bounds; ///< "x0,x1,y0,y1"
   std::string dump_folder;
   bool quiet = false;
 };

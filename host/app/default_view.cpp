@@ -48,8 +48,7 @@ Vector3d terrain_up(const Survey& s) {
   int thin = 0;
   extent.minCoeff(&thin);
   const double middle = extent.sum() - extent.minCoeff() - extent.maxCoeff();
-  if (extent[thin] > 0.35 * middle || std::fabs(s.mean_normal[thin]) < 0.5)
-    return Vector3d::Zero();
+  if (extent[thin] > 0.35 * middle || std::fabs(s.mean_normal[thin]) < 0.5) return Vector3d::Zero();
   return Vector3d::Unit(thin) * (s.mean_normal[thin] > 0.0 ? 1.0 : -1.0);
 }
 
@@ -63,14 +62,12 @@ double footprint(const PointCloud& cloud, const Survey& s, int axis, double sign
   Vector3d middle(0, 0, 0);
   for (const Vector3d& p : cloud.position) {
     middle += p;
-    if (sign * p[axis] > floor + 0.02 * extent[axis])
-      continue;
+    if (sign * p[axis] > floor + 0.02 * extent[axis]) continue;
     low_a = std::min(low_a, p[a]), high_a = std::max(high_a, p[a]);
     low_b = std::min(low_b, p[b]), high_b = std::max(high_b, p[b]);
   }
   middle /= static_cast<double>(cloud.size());
-  if (middle[a] < low_a || middle[a] > high_a || middle[b] < low_b || middle[b] > high_b)
-    return 0.0;
+  if (middle[a] < low_a || middle[a] > high_a || middle[b] < low_b || middle[b] > high_b) return 0.0;
   return (high_a - low_a) * (high_b - low_b) / (extent[a] * extent[b]);
 }
 
@@ -89,8 +86,8 @@ Vector3d standing_up(const PointCloud& cloud, const Survey& s) {
   return best;
 }
 
-/// Where the front is, a little from the right: across the longer side; towards +z with y up and -y with z up, as models
-/// have it.
+/// Where the front is, a little from the right: across the longer side; towards +z with y up and -y with z up, as
+/// models have it.
 Vector3d front_of(const Survey& s, const Vector3d& up) {
   const bool y_up = std::fabs(up.y()) > 0.5;
   const Vector3d extent = s.high - s.low, depth_axis = y_up ? Vector3d(0, 0, 1) : Vector3d(0, -1, 0);
@@ -109,12 +106,11 @@ void fit(Scene& scene, const PointCloud& cloud, const Survey& s, const Vector3d&
   double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
   for (int pass = 0; pass < 2; ++pass) {
     // First pass: the middle of what is seen; second: how far away it fits.
-    const Vector3d target = pass == 0 ? centre
-                                      : Vector3d(centre + 0.5 * (low_x + high_x) * right + 0.5 * (low_y + high_y) * upward);
+    const Vector3d target =
+        pass == 0 ? centre : Vector3d(centre + 0.5 * (low_x + high_x) * right + 0.5 * (low_y + high_y) * upward);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const Vector3d& p = cloud.position[i];
-      if ((p.array() < (s.low - slack).array()).any() || (p.array() > (s.high + slack).array()).any())
-        continue;
+      if ((p.array() < (s.low - slack).array()).any() || (p.array() > (s.high + slack).array()).any()) continue;
       const Vector3d d = p - target;
       const double x = d.dot(right), y = d.dot(upward), z = d.dot(back), r = cloud.radius[i];
       if (pass == 0) {
@@ -130,20 +126,30 @@ void fit(Scene& scene, const PointCloud& cloud, const Survey& s, const Vector3d&
   scene.camera.up = upward;
 }
 
-/// A depth image is looked at from its sensor, at the origin of its coordinates, upside down as depth cameras count.
+/// A depth image is looked at from its sensor, at the origin of its coordinates; y runs downwards, as depth cameras
+/// count.
 void look_from_sensor(Scene& scene, const PointCloud& cloud, const Survey& s) {
-  const Vector3d forward = (0.5 * (s.low + s.high)).normalized();
-  const Vector3d up = std::fabs(forward.y()) < 0.9 ? Vector3d(0, -1, 0) : Vector3d(0, 0, 1);
-  const Vector3d right = forward.cross(up).normalized(), upward = right.cross(forward);
-  double tangent = 0.05;
-  for (const Vector3d& p : cloud.position) {
-    const double z = p.dot(forward);
-    if (z > 0.0 && (p.array() >= s.low.array()).all() && (p.array() <= s.high.array()).all())
-      tangent = std::max({tangent, std::fabs(p.dot(upward)) / z,
-                          std::fabs(p.dot(right)) / z * scene.render.height / scene.render.width});
+  Vector3d forward = (0.5 * (s.low + s.high)).normalized();
+  const Vector3d down = std::fabs(forward.y()) < 0.9 ? Vector3d(0, 1, 0) : Vector3d(0, 0, -1);
+  Vector3d right, upward;
+  double tangent_x = 0.0, tangent_y = 0.0;
+  for (int pass = 0; pass < 3; ++pass) { // turns towards the middle of what is seen, then measures it
+    right = down.cross(forward).normalized();
+    upward = right.cross(forward);
+    double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
+    for (const Vector3d& p : cloud.position) {
+      const double z = p.dot(forward);
+      if (z <= 0.0 || (p.array() < s.low.array()).any() || (p.array() > s.high.array()).any()) continue;
+      const double x = p.dot(right) / z, y = p.dot(upward) / z;
+      low_x = std::min(low_x, x), high_x = std::max(high_x, x);
+      low_y = std::min(low_y, y), high_y = std::max(high_y, y);
+    }
+    tangent_x = std::max(high_x, -low_x), tangent_y = std::max(high_y, -low_y);
+    if (pass < 2) forward = (forward + 0.5 * (low_x + high_x) * right + 0.5 * (low_y + high_y) * upward).normalized();
   }
+  const double tangent = std::max({0.05, tangent_y, tangent_x * scene.render.height / scene.render.width});
   scene.camera.position = Vector3d::Zero();
-  scene.camera.look_at = 0.5 * (s.low + s.high);
+  scene.camera.look_at = forward * (0.5 * (s.low + s.high)).norm();
   scene.camera.up = upward;
   scene.camera.fov_deg = std::min(120.0, 2.0 * std::atan(frame_margin * tangent) / degree);
 }
@@ -182,7 +188,8 @@ std::string choose_camera(Scene& scene, const WorldSplats& splats) {
   }
   const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
   char text[256];
-  std::snprintf(text, sizeof text, "camera chosen: %s (position = [%.6g, %.6g, %.6g], look_at = [%.6g, %.6g, %.6g], fov_deg = %.4g)",
+  std::snprintf(text, sizeof text,
+                "camera chosen: %s (position = [%.6g, %.6g, %.6g], look_at = [%.6g, %.6g, %.6g], fov_deg = %.4g)",
                 said.c_str(), p.x(), p.y(), p.z(), t.x(), t.y(), t.z(), scene.camera.fov_deg);
   return text;
 }

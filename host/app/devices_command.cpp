@@ -19,8 +19,7 @@ std::vector<Build> every_build(const DeviceInfo& info) {
   for (const PoolStorage storage : {PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d})
     for (const Stepping stepping : {Stepping::exact, Stepping::absolute_delta})
       for (const unsigned axis_bits : {1u, 2u}) {
-        if (storage != PoolStorage::buffer && !info.images)
-          continue;
+        if (storage != PoolStorage::buffer && !info.images) continue;
         TraversalVariant variant;
         variant.storage = storage;
         variant.stepping = stepping;
@@ -33,7 +32,9 @@ std::vector<Build> every_build(const DeviceInfo& info) {
   return builds;
 }
 
-std::string kind(const DeviceInfo& info) { return info.is_gpu ? "GPU" : info.is_cpu ? "CPU" : "accelerator"; }
+std::string kind(const DeviceInfo& info) {
+  return info.is_gpu ? "GPU" : info.is_cpu ? "CPU" : "accelerator";
+}
 
 /// Empty when every build succeeds, else the first failure's text.
 std::string check_device(const Device& device, std::size_t& count) {
@@ -53,8 +54,7 @@ std::string check_device(const Device& device, std::size_t& count) {
 
 ExitCode run_devices(bool json, bool check, const std::string& selector) {
   std::vector<Device> devices = list_devices();
-  if (!selector.empty() || devices.empty())
-    devices = {choose_device(selector)}; // throws with what there is
+  if (!selector.empty() || devices.empty()) devices = {choose_device(selector)}; // throws with what there is
   nlohmann::json list = nlohmann::json::array();
   bool all_fine = true;
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -73,24 +73,25 @@ ExitCode run_devices(bool json, bool check, const std::string& selector) {
                          {"max_work_group", info.max_work_group},
                          {"images", info.images}};
     if (!json)
-      std::printf("%zu  %s\n   %s, %u compute units, %llu MiB (%llu MiB in one piece), images: %s\n   %s, %s, driver %s\n",
-                  i, info.name.c_str(), kind(info).c_str(), info.compute_units,
-                  static_cast<unsigned long long>(info.memory_bytes >> 20),
-                  static_cast<unsigned long long>(info.max_allocation_bytes >> 20), info.images ? "yes" : "no",
-                  info.platform.c_str(), info.opencl.c_str(), info.driver.c_str());
+      std::printf(
+          "%zu  %s\n   %s, %u compute units, %llu MiB (%llu MiB in one piece), images: %s\n   %s, %s, driver %s\n", i,
+          info.name.c_str(), kind(info).c_str(), info.compute_units,
+          static_cast<unsigned long long>(info.memory_bytes >> 20),
+          static_cast<unsigned long long>(info.max_allocation_bytes >> 20), info.images ? "yes" : "no",
+          info.platform.c_str(), info.opencl.c_str(), info.driver.c_str());
     if (check) {
       std::size_t builds = 0;
       const std::string failure = check_device(devices[i], builds);
       all_fine = all_fine && failure.empty();
       entry["check"] = {{"passed", failure.empty()}, {"builds", builds}, {"message", failure}};
       if (!json)
-        std::printf("   check: %s\n", failure.empty() ? ("all " + std::to_string(builds) + " kernel builds compile").c_str()
-                                                      : failure.c_str());
+        std::printf("   check: %s\n", failure.empty()
+                                          ? ("all " + std::to_string(builds) + " kernel builds compile").c_str()
+                                          : failure.c_str());
     }
     list.push_back(entry);
   }
-  if (json)
-    std::printf("%s\n", list.dump(1).c_str());
+  if (json) std::printf("%s\n", list.dump(1).c_str());
   return all_fine ? ExitCode::done : ExitCode::device;
 }
 

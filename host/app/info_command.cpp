@@ -23,8 +23,7 @@ void print_report(const std::string& file, const CloudReport& report) {
   for (std::size_t i = 0; i < std::min(most, report.properties.size()); ++i)
     std::printf("  %s %-*s  %s\n", i == 0 ? "properties " : "           ", static_cast<int>(widest),
                 report.properties[i].property.c_str(), report.properties[i].use.c_str());
-  if (report.properties.size() > most)
-    std::printf("              and %zu more\n", report.properties.size() - most);
+  if (report.properties.size() > most) std::printf("              and %zu more\n", report.properties.size() - most);
   for (const std::string& warning : report.warnings)
     std::printf("  warning     %s\n", warning.c_str());
 }
@@ -53,8 +52,8 @@ ExitCode run_info(const std::string& file) {
     area += cloud.area[i];
   }
   if (is_scene) {
-    std::printf("%s\n  scene       %zu clouds, %zu shapes, %zu materials, %zu lights\n", file.c_str(), scene.clouds.size(),
-                scene.shapes.size(), scene.materials.size(), scene.lights.size());
+    std::printf("%s\n  scene       %zu clouds, %zu shapes, %zu materials, %zu lights\n", file.c_str(),
+                scene.clouds.size(), scene.shapes.size(), scene.materials.size(), scene.lights.size());
     for (const std::string& warning : scene.warnings)
       std::printf("  warning     %s\n", warning.c_str());
   }
@@ -69,8 +68,8 @@ ExitCode run_info(const std::string& file) {
               std::sqrt(area / static_cast<double>(cloud.size())));
   std::printf("  radius      %.4g median, %.4g at 99 %%, %.4g largest\n", percentile(cloud.radius, 0.5),
               percentile(cloud.radius, 0.99), percentile(cloud.radius, 1.0));
-  std::printf("  octree      %zu nodes, %zu leaves, depth %u, %.2f extra splats a splat\n", pools.nodes.size(), pools.leaves,
-              pools.depth, static_cast<double>(pools.extra_splats) / static_cast<double>(cloud.size()));
+  std::printf("  octree      %zu nodes, %zu leaves, depth %u, %.2f extra splats a splat\n", pools.nodes.size(),
+              pools.leaves, pools.depth, static_cast<double>(pools.extra_splats) / static_cast<double>(cloud.size()));
   std::printf("  memory      %.1f MiB of pools, %.0f bytes a splat\n", static_cast<double>(pools.bytes()) / 1048576.0,
               static_cast<double>(pools.bytes()) / static_cast<double>(cloud.size()));
   return ExitCode::done;

@@ -9,7 +9,9 @@ namespace {
 std::atomic<bool> asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
-void on_signal(int) { asked = true; }
+void on_signal(int) {
+  asked = true;
+}
 
 } // namespace
 
@@ -21,6 +23,8 @@ void catch_interrupts() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-bool interrupted() { return asked; }
+bool interrupted() {
+  return asked;
+}
 
 } // namespace pointgi

@@ -23,7 +23,9 @@ void set_up_log(int verbosity, bool quiet) {
   spdlog::set_level(quiet ? spdlog::level::warn : verbosity > 0 ? spdlog::level::debug : spdlog::level::info);
 }
 
-int code_of(ExitCode code) { return static_cast<int>(code); }
+int code_of(ExitCode code) {
+  return static_cast<int>(code);
+}
 
 std::string environment_or(const std::string& flag, const char* variable) {
   const char* value = std::getenv(variable);
@@ -37,8 +39,7 @@ struct Common {
 
 /// Threads of the host's loops and of a CPU device; before the first OpenCL call.
 void limit_threads(int threads) {
-  if (threads <= 0)
-    return;
+  if (threads <= 0) return;
   omp_set_num_threads(threads);
   setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
 }
@@ -95,10 +96,8 @@ int run(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then a write error, reported as one
   catch_interrupts();
   render.device = environment_or(render.device, "POINTGI_DEVICE");
-  if (render_command->parsed())
-    return code_of(run_render(render));
-  if (info_command->parsed())
-    return code_of(run_info(info_file));
+  if (render_command->parsed()) return code_of(run_render(render));
+  if (info_command->parsed()) return code_of(run_info(info_file));
   return code_of(run_devices(json, check, checked_device));
 }
 

@@ -10,7 +10,9 @@ bool is_scene_file(const std::string& file) {
   return file.size() >= end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
 }
 
-unsigned axis_bits_of(const OctreeSettings& settings) { return settings.branching == 4 ? 2 : 1; }
+unsigned axis_bits_of(const OctreeSettings& settings) {
+  return settings.branching == 4 ? 2 : 1;
+}
 
 StepPools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings) {
   const unsigned axis_bits = axis_bits_of(settings);

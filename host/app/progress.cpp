@@ -37,16 +37,13 @@ Progress::Progress(std::string stage, bool quiet)
       start_(std::chrono::steady_clock::now()), last_(start_) {}
 
 Progress::~Progress() {
-  if (drawn_ && terminal_)
-    std::fprintf(stderr, "\r\033[K"); // what follows is the result, not the bar
+  if (drawn_ && terminal_) std::fprintf(stderr, "\r\033[K"); // what follows is the result, not the bar
 }
 
 void Progress::update(double share) {
-  if (quiet_)
-    return;
+  if (quiet_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (seconds_between(last_, now) < (terminal_ ? bar_interval : plain_interval))
-    return;
+  if (seconds_between(last_, now) < (terminal_ ? bar_interval : plain_interval)) return;
   last_ = now;
   drawn_ = true;
   const double elapsed = seconds_between(start_, now), done = std::clamp(share, 1e-6, 1.0);

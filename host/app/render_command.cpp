@@ -22,13 +22,11 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
   while (at <= text.size()) {
     const std::size_t end = std::min(text.find(separator, at), text.size());
     const std::string part = text.substr(at, end - at);
-    if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos)
-      break;
+    if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos) break;
     numbers.push_back(std::stoi(part));
     at = end + 1;
   }
-  if (numbers.size() != count || at <= text.size())
-    throw Error(ExitCode::usage, form + ", found \"" + text + "\"");
+  if (numbers.size() != count || at <= text.size()) throw Error(ExitCode::usage, form + ", found \"" + text + "\"");
   return numbers;
 }
 
@@ -39,18 +37,14 @@ std::vector<std::string> overrides_of(const RenderOptions& options) {
     const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
     overrides.push_back("render.size=[" + std::to_string(size[0]) + ", " + std::to_string(size[1]) + "]");
   }
-  if (options.spp)
-    overrides.push_back("render.spp=" + std::to_string(*options.spp));
-  if (options.seed)
-    overrides.push_back("render.seed=" + std::to_string(*options.seed));
-  if (options.exposure)
-    overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
+  if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
+  if (options.seed) overrides.push_back("render.seed=" + std::to_string(*options.seed));
+  if (options.exposure) overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
   return overrides;
 }
 
 PixelWindow window_of(const RenderOptions& options, const RenderSettings& render) {
-  if (options.pixel_bounds.empty())
-    return {0, render.width, 0, render.height};
+  if (options.pixel_bounds.empty()) return {0, render.width, 0, render.height};
   const std::string form = "--pixelbounds: expected x0,x1,y0,y1 with 0 <= x0 < x1 <= " + std::to_string(render.width) +
                            " and 0 <= y0 < y1 <= " + std::to_string(render.height);
   const auto b = whole_numbers(options.pixel_bounds, ',', 4, form);
@@ -85,7 +79,8 @@ void skip_indirect_stages(const Scene& scene, StageLog& stages) {
   stages.skip("fmm", reason);
   stages.skip("photon", "no specular material");
   if (scene.radiosity.place)
-    spdlog::warn("{}: [radiosity] has no effect: this version renders direct light only", scene.radiosity.place->text());
+    spdlog::warn("{}: [radiosity] has no effect: this version renders direct light only",
+                 scene.radiosity.place->text());
   if (scene.caustics.place)
     spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
 }
@@ -123,25 +118,24 @@ Scene scene_of(const RenderOptions& options) {
 
 /// What the user left open is chosen so that the picture is worth looking at.
 void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
-  if (!scene.camera.chosen)
-    spdlog::info("{}", choose_camera(scene, splats));
-  if (bare && scene.lights.empty() && scene.environment.isZero())
-    choose_lights(scene);
+  if (!scene.camera.chosen) spdlog::info("{}", choose_camera(scene, splats));
+  if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
 }
 
 void stop_if_asked() {
-  if (interrupted())
-    throw Error(ExitCode::interrupted, "interrupted before the first pixel; nothing was written");
+  if (interrupted()) throw Error(ExitCode::interrupted, "interrupted before the first pixel; nothing was written");
 }
 
 } // namespace
 
 ExitCode run_render(const RenderOptions& options) {
   if (options.integrator != "pointgi")
-    throw Error(ExitCode::usage, "--integrator " + options.integrator +
-                                     ": this version has the integrator \"pointgi\" only");
+    throw Error(ExitCode::usage,
+                "--integrator " + options.integrator + ": this version has the integrator \"pointgi\" only");
   StageLog stages;
-  const auto close_to_1 = [](double factor, int spp) { return std::max(1, static_cast<int>(std::lround(spp * factor))); };
+  const auto close_to_1 = [](double factor, int spp) {
+    return std::max(1, static_cast<int>(std::lround(spp * factor)));
+  };
 
   stages.start("scene");
   Scene scene = scene_of(options);
@@ -184,9 +178,9 @@ ExitCode run_render(const RenderOptions& options) {
   Stats stats;
   {
     Progress progress("render", options.quiet);
-    stats.render = render(session, on_device, {window, lighting, frame, ids, variant},
-                          [&](const Band& band) { writer.write(band); },
-                          [&](double share) { progress.update(share); }, interrupted);
+    stats.render = render(
+        session, on_device, {window, lighting, frame, ids, variant}, [&](const Band& band) { writer.write(band); },
+        [&](double share) { progress.update(share); }, interrupted);
   }
   stages.finish(stats.render.rays, "rays", stats.render.device_seconds);
   const double render_seconds = stages.records().back().seconds;
@@ -211,11 +205,11 @@ ExitCode run_render(const RenderOptions& options) {
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }
-  if (!options.trace_file.empty())
-    write_text(options.trace_file, stages.chrome_trace());
+  if (!options.trace_file.empty()) write_text(options.trace_file, stages.chrome_trace());
   std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());
   if (stats.render.interrupted) {
-    spdlog::warn("interrupted: the picture holds its first {} of {} rows", stats.render.rows_done, window.y1 - window.y0);
+    spdlog::warn("interrupted: the picture holds its first {} of {} rows", stats.render.rows_done,
+                 window.y1 - window.y0);
     return ExitCode::interrupted;
   }
   spdlog::info("{} points, {:.1f} million rays, {} ({} on the device)", pools.points.size(),

@@ -35,8 +35,13 @@ std::string StageLog::chrome_trace() const {
   nlohmann::json events = nlohmann::json::array();
   for (const StageRecord& record : records_)
     if (record.ran)
-      events.push_back({{"name", record.name}, {"cat", "stage"}, {"ph", "X"}, {"pid", 1}, {"tid", 1},
-                        {"ts", 1e6 * record.start}, {"dur", 1e6 * record.seconds},
+      events.push_back({{"name", record.name},
+                        {"cat", "stage"},
+                        {"ph", "X"},
+                        {"pid", 1},
+                        {"tid", 1},
+                        {"ts", 1e6 * record.start},
+                        {"dur", 1e6 * record.seconds},
                         {"args", {{record.unit.empty() ? "items" : record.unit, record.items}}}});
   return nlohmann::json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump(1);
 }

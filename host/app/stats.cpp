@@ -20,8 +20,8 @@ void write_text(const std::string& path, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = ::write(file.fd(), text.data() + done, text.size() - done);
     if (written < 0)
-      throw Error(ExitCode::output, path + ": cannot write: " + std::strerror(errno) +
-                                        "; make room, or choose another place");
+      throw Error(ExitCode::output,
+                  path + ": cannot write: " + std::strerror(errno) + "; make room, or choose another place");
     done += static_cast<std::size_t>(written);
   }
   file.commit();
@@ -34,22 +34,22 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   out["version"] = POINTGI_VERSION;
   out["command"] = stats.command;
   out["device"] = {{"name", info.name}, {"vendor", info.vendor}, {"driver", info.driver}, {"opencl", info.opencl}};
-  out["scene"] = {{"points", stats.points},
-                  {"materials", stats.scene->materials.size()},
-                  {"lights", stats.scene->lights.size()}};
+  out["scene"] = {
+      {"points", stats.points}, {"materials", stats.scene->materials.size()}, {"lights", stats.scene->lights.size()}};
   out["octree"] = {{"nodes", stats.pools->nodes.size()},
                    {"leaves", stats.pools->leaves},
                    {"depth", stats.pools->depth},
                    {"extra_splats", stats.pools->extra_splats},
                    {"bytes", stats.pools->bytes()}};
   const RenderTotals& r = stats.render;
-  out["render"] = {{"rays", r.rays},
-                   {"eye_rays", r.eye_rays},
-                   {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
-                   {"back_face_share", r.eye_rays_on_splats > 0 ? static_cast<double>(r.eye_rays_on_back_faces) /
-                                                                      static_cast<double>(r.eye_rays_on_splats)
-                                                                : 0.0},
-                   {"interrupted", r.interrupted}};
+  out["render"] = {
+      {"rays", r.rays},
+      {"eye_rays", r.eye_rays},
+      {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
+      {"back_face_share", r.eye_rays_on_splats > 0 ? static_cast<double>(r.eye_rays_on_back_faces) /
+                                                         static_cast<double>(r.eye_rays_on_splats)
+                                                   : 0.0},
+      {"interrupted", r.interrupted}};
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())
     out["stages"].push_back({{"name", s.name},

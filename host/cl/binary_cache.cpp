@@ -16,8 +16,7 @@ constexpr char magic[8] = {'p', 'g', 'i', 'k', 'b', 'i', 'n', '1'};
 
 std::string file_of(const std::string& key) {
   const std::string folder = cache_folder();
-  if (folder.empty())
-    return {};
+  if (folder.empty()) return {};
   char name[32];
   std::snprintf(name, sizeof name, "/%016llx.bin", static_cast<unsigned long long>(fnv1a(key)));
   return folder + "/kernels" + name;
@@ -27,8 +26,7 @@ bool write_all(int fd, const void* data, std::size_t size) {
   const char* at = static_cast<const char*>(data);
   while (size > 0) {
     const ssize_t written = ::write(fd, at, size);
-    if (written <= 0)
-      return false;
+    if (written <= 0) return false;
     at += written;
     size -= static_cast<std::size_t>(written);
   }
@@ -49,12 +47,9 @@ std::string cache_folder() {
     const char* value = std::getenv(name);
     return value != nullptr ? value : "";
   };
-  if (const std::string own = variable("POINTGI_CACHE_DIR"); !own.empty())
-    return own;
-  if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty())
-    return xdg + "/pointgi";
-  if (const std::string home = variable("HOME"); !home.empty())
-    return home + "/.cache/pointgi";
+  if (const std::string own = variable("POINTGI_CACHE_DIR"); !own.empty()) return own;
+  if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg + "/pointgi";
+  if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/pointgi";
   return {};
 }
 
@@ -67,18 +62,15 @@ std::optional<std::vector<unsigned char>> load_binary(const std::string& key) {
       !file.read(reinterpret_cast<char*>(&key_size), sizeof key_size) || key_size != key.size())
     return std::nullopt;
   std::string found_key(key.size(), '\0');
-  if (!file.read(found_key.data(), static_cast<std::streamsize>(key.size())) || found_key != key)
-    return std::nullopt;
+  if (!file.read(found_key.data(), static_cast<std::streamsize>(key.size())) || found_key != key) return std::nullopt;
   std::vector<unsigned char> binary((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (binary.empty())
-    return std::nullopt;
+  if (binary.empty()) return std::nullopt;
   return binary;
 }
 
 void store_binary(const std::string& key, const std::vector<unsigned char>& binary) {
   const std::string path = file_of(key);
-  if (path.empty())
-    return;
+  if (path.empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
   try {

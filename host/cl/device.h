@@ -11,8 +11,8 @@ namespace pointgi {
 struct DeviceInfo {
   std::string name;
   std::string vendor;
-  std::string driver;   ///< driver version
-  std::string opencl;   ///< "OpenCL 1.2 ..." as the device says
+  std::string driver; ///< driver version
+  std::string opencl; ///< "OpenCL 1.2 ..." as the device says
   std::string platform;
   bool is_cpu = false;
   bool is_gpu = false;

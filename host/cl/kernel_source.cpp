@@ -21,22 +21,19 @@ std::string read_kernel_file(const std::string& name, const std::string& include
     return text.str();
   }
   for (const EmbeddedFile& file : embedded_kernels())
-    if (file.name == name)
-      return file.text;
+    if (file.name == name) return file.text;
   throw Error(ExitCode::internal, "no embedded kernel file " + name + included_by);
 }
 
 /// The name in `#include "name"`, or empty.
 std::string included_name(const std::string& line) {
   const std::string start = "#include \"";
-  if (line.compare(0, start.size(), start) != 0)
-    return {};
+  if (line.compare(0, start.size(), start) != 0) return {};
   return line.substr(start.size(), line.find('"', start.size()) - start.size());
 }
 
 void append(const std::string& name, const std::string& included_by, std::set<std::string>& done, std::string& out) {
-  if (!done.insert(name).second)
-    return;
+  if (!done.insert(name).second) return;
   std::istringstream lines(read_kernel_file(name, included_by));
   out += "#line 1 \"kernels/" + name + "\"\n";
   std::string line;

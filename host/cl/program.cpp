@@ -32,8 +32,8 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
   const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options);
   const std::string source = kernel_source(file);
   dump(file, all_options, source);
-  const std::string key = source + "\n" + all_options + "\n" + info_.platform + "\n" + info_.name + "\n" + info_.driver +
-                          "\n" + info_.opencl;
+  const std::string key = source + "\n" + all_options + "\n" + info_.platform + "\n" + info_.name + "\n" +
+                          info_.driver + "\n" + info_.opencl;
   const std::vector<cl::Device> devices{device_};
   if (const auto binary = load_binary(key)) {
     try {
@@ -50,20 +50,18 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
     program = cl::Program(context_, source);
     program.build(devices, all_options.c_str());
   } catch (const cl::Error& error) {
-    throw Error(ExitCode::device, "kernels/" + file + " did not compile: " + cl_error_name(error.err()) + "\ndevice:  " +
-                                      info_.name + " (" + info_.platform + ")\ndriver:  " + info_.driver + "\noptions: " +
-                                      all_options + "\n" + build_log(program, device_));
+    throw Error(ExitCode::device, "kernels/" + file + " did not compile: " + cl_error_name(error.err()) +
+                                      "\ndevice:  " + info_.name + " (" + info_.platform + ")\ndriver:  " +
+                                      info_.driver + "\noptions: " + all_options + "\n" + build_log(program, device_));
   }
   ++compiled_;
   const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-  if (!binaries.empty() && !binaries.front().empty())
-    store_binary(key, binaries.front());
+  if (!binaries.empty() && !binaries.front().empty()) store_binary(key, binaries.front());
   return program;
 }
 
 void Session::dump(const std::string& file, const std::string& options, const std::string& source) const {
-  if (dump_folder_.empty())
-    return;
+  if (dump_folder_.empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(dump_folder_, ignored);
   std::string name = file;
@@ -71,7 +69,8 @@ void Session::dump(const std::string& file, const std::string& options, const st
   std::ofstream out(dump_folder_ + "/" + name);
   out << "/* clBuildProgram options: " << options << " */\n" << source;
   if (!out)
-    throw Error(ExitCode::output, dump_folder_ + ": cannot write " + name + "; choose a writable --dump-kernels folder");
+    throw Error(ExitCode::output,
+                dump_folder_ + ": cannot write " + name + "; choose a writable --dump-kernels folder");
 }
 
 std::string cl_error_name(int code) {
@@ -99,8 +98,7 @@ std::string cl_error_name(int code) {
       {CL_INVALID_IMAGE_SIZE, "CL_INVALID_IMAGE_SIZE"},
   };
   for (const Name& entry : names)
-    if (entry.code == code)
-      return std::string(entry.name) + " (" + std::to_string(code) + ")";
+    if (entry.code == code) return std::string(entry.name) + " (" + std::to_string(code) + ")";
   return "OpenCL error " + std::to_string(code);
 }
 

@@ -6,7 +6,9 @@ namespace pointgi {
 
 namespace {
 
-std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }
+std::string megabytes(std::uint64_t bytes) {
+  return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
 
 bool is_memory_error(int code) {
   return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES || code == CL_OUT_OF_HOST_MEMORY ||
@@ -62,16 +64,15 @@ void Session::account(const cl::Memory& memory, std::uint64_t bytes) {
     r->total->now -= r->bytes;
     delete r;
   };
-  if (clSetMemObjectDestructorCallback(memory(), callback, release) != CL_SUCCESS)
-    delete release;
+  if (clSetMemObjectDestructorCallback(memory(), callback, release) != CL_SUCCESS) delete release;
 }
 
 cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
   // Zero-sized buffers do not exist in OpenCL; an unused argument still needs one.
   const std::size_t size = std::max<std::size_t>(bytes, 16);
   if (size > info_.max_allocation_bytes)
-    throw Error(ExitCode::memory, info_.name + ": a buffer of " + megabytes(size) + " is needed, and the device gives " +
-                                      megabytes(info_.max_allocation_bytes) +
+    throw Error(ExitCode::memory, info_.name + ": a buffer of " + megabytes(size) +
+                                      " is needed, and the device gives " + megabytes(info_.max_allocation_bytes) +
                                       " at most in one piece; use a smaller cloud, or another --device");
   try {
     cl::Buffer buffer(context_, flags, size);
@@ -83,8 +84,7 @@ cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
 }
 
 void Session::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes) {
-  if (bytes == 0)
-    return;
+  if (bytes == 0) return;
   try {
     queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
   } catch (const cl::Error& error) {
@@ -93,8 +93,7 @@ void Session::write_bytes(const cl::Buffer& buffer, const void* data, std::size_
 }
 
 void Session::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes) {
-  if (bytes == 0)
-    return;
+  if (bytes == 0) return;
   try {
     queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, data);
   } catch (const cl::Error& error) {
@@ -104,7 +103,9 @@ void Session::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes
 
 namespace {
 
-cl::ImageFormat texel_format(bool is_float) { return {CL_RGBA, cl_channel_type(is_float ? CL_FLOAT : CL_UNSIGNED_INT32)}; }
+cl::ImageFormat texel_format(bool is_float) {
+  return {CL_RGBA, cl_channel_type(is_float ? CL_FLOAT : CL_UNSIGNED_INT32)};
+}
 
 } // namespace
 
@@ -116,14 +117,16 @@ cl::Memory Session::upload_image1d(const void* texels, std::size_t count, bool i
   const cl::Buffer buffer = allocate_bytes(16 * count, CL_MEM_READ_ONLY);
   write_bytes(buffer, texels, 16 * count);
   try {
-    return cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, texel_format(is_float), std::max<std::size_t>(count, 1), buffer);
+    return cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, texel_format(is_float), std::max<std::size_t>(count, 1),
+                             buffer);
   } catch (const cl::Error& error) {
     rethrow(error, info_, "making an image1d_buffer");
   }
 }
 
 cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool is_float, unsigned width_log2) {
-  const std::size_t width = std::size_t{1} << width_log2, height = std::max<std::size_t>(1, (count + width - 1) / width);
+  const std::size_t width = std::size_t{1} << width_log2,
+                    height = std::max<std::size_t>(1, (count + width - 1) / width);
   if (!info_.images || width > info_.image2d_width || height > info_.image2d_height)
     throw Error(ExitCode::device, info_.name + ": an image of " + std::to_string(width) + " x " +
                                       std::to_string(height) + " texels is needed, and the device gives " +
@@ -133,14 +136,13 @@ cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool i
     cl::Image2D image(context_, CL_MEM_READ_ONLY, texel_format(is_float), width, height);
     account(image, 16 * width * height);
     const auto write = [&](std::size_t rows_from, std::size_t w, std::size_t rows) {
-      if (rows == 0)
-        return;
-      queue_.enqueueWriteImage(image, CL_TRUE, {0, rows_from, 0}, {w, rows, 1}, 0, 0,
-                               const_cast<void*>(static_cast<const void*>(static_cast<const char*>(texels) + 16 * rows_from * width)));
+      if (rows == 0) return;
+      queue_.enqueueWriteImage(
+          image, CL_TRUE, {0, rows_from, 0}, {w, rows, 1}, 0, 0,
+          const_cast<void*>(static_cast<const void*>(static_cast<const char*>(texels) + 16 * rows_from * width)));
     };
     write(0, width, count / width);
-    if (count % width != 0)
-      write(count / width, count % width, 1);
+    if (count % width != 0) write(count / width, count % width, 1);
     return image;
   } catch (const cl::Error& error) {
     rethrow(error, info_, "making an image");

@@ -187,7 +187,9 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
         (signs_given ? "their sides are not consistent in the file; normals = \"estimate\" finds new ones"
                      : "no consistent side was found; a viewpoint, or normals in the file, would tell"));
 
-  SplatSizes sizes = splat_sizes(sites, cloud.normal, spacing, spacing.opposite < unsigned_share);
+  // A mesh's vertices lie on its surface, a scan's points about it.
+  SplatSizes sizes =
+      splat_sizes(sites, cloud.normal, spacing, spacing.opposite < unsigned_share, cloud.triangle.empty());
   const bool own_radii = !cloud.radius.empty() && options.radii != RadiusSource::estimate;
   report.radii_from = own_radii ? "file" : "estimated (covering each point's cell)";
   report.areas_from = sampled ? "given" : "estimated (Voronoi cells in the tangent planes)";

@@ -25,7 +25,8 @@ constexpr double longest_reach = 3.0; // of a cell on its open side, in spacings
 constexpr float largest_step =
     3.0f; // of the spacing, that cells reach across (with longest_reach: a 16-fold density step)
 constexpr double widest_gap = 125.0 / 180.0 * pi; // between neighbours; wider and the surface ends there
-constexpr unsigned alike_candidates = 8;          // points looked at, of those that share a site
+constexpr double least_cosine = 0.7;     // of neighbours' normals; where they are rougher discs would grow into blobs
+constexpr unsigned alike_candidates = 8; // points looked at, of those that share a site
 
 float spacing_of(const Neighbour* near, unsigned count) {
   // In the plane count = density pi d²; four neighbours of a row of five, or two points, still give their distance.
@@ -75,6 +76,10 @@ public:
     double area, reach; ///< local units
     bool capped;
   };
+
+  /// How much wider than their cells discs must be where normals are noisy: neighbours tilt away from each other, and a
+  /// disc tilted by an angle covers its cosine of the way across. 1 on smooth surfaces. Of the cell made last.
+  double widening() const { return widening_; }
 
   void go_to(std::uint32_t site) {
     site_ = site;
@@ -127,15 +132,22 @@ private:
 
   void lay_flat(const TangentFrame& frame, unsigned count) {
     candidates_ = 0;
+    std::array<double, spacing_neighbours> cosine;
     const Eigen::Vector3d& origin = sites_.position(site_);
     const double usual = spacing_[site_];
     for (unsigned j = 0; j < count; ++j) {
       const std::uint32_t other = near_[j].site;
       Candidate& candidate = candidate_[candidates_];
-      if (!unfold(frame, normal_at(other, frame.n), sites_.position(other) - origin, usual, candidate.offset)) continue;
+      const Eigen::Vector3d normal = normal_at(other, frame.n);
+      if (!unfold(frame, normal, sites_.position(other) - origin, usual, candidate.offset)) continue;
+      if (candidates_ < spacing_neighbours) cosine[candidates_] = normal.dot(frame.n);
       candidate.spacing = spacing_[other];
       ++candidates_;
     }
+    // The third of six: a crease, across which the normals of one or two neighbours differ, is not roughness.
+    const unsigned m = std::min(candidates_, spacing_neighbours);
+    std::nth_element(cosine.begin(), cosine.begin() + m / 3, cosine.begin() + m);
+    widening_ = m == 0 ? 1.0 : 1.0 / std::clamp(cosine[m / 3], least_cosine, 1.0);
   }
 
   /// The cell of a point at the rim of what its neighbours span, or beside a large step in density.
@@ -212,6 +224,7 @@ private:
   std::uint32_t site_ = 0;
   unsigned found_ = 0;
   unsigned candidates_ = 0;
+  double widening_ = 1.0;
   std::array<Neighbour, neighbour_stages.back()> near_;
   std::array<Candidate, neighbour_stages.back()> candidate_;
   std::array<double, neighbour_stages.back() + 1> angle_;
@@ -277,7 +290,7 @@ SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>&
 }
 
 SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
-                       bool faces_agree) {
+                       bool faces_agree, bool noisy) {
   SplatSizes sizes;
   sizes.radius.resize(normals.size());
   sizes.area.resize(normals.size());
@@ -296,7 +309,7 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
       for (const std::uint32_t point : points) {
         if (before == nullptr || normals[point] != *before) cell = maker.cell(normals[point]);
         before = &normals[point];
-        sizes.radius[point] = positive_float(cell.reach * splat_overlap * unit);
+        sizes.radius[point] = positive_float(cell.reach * splat_overlap * (noisy ? maker.widening() : 1.0) * unit);
         sizes.area[point] = positive_float(cell.area / sharing.with(point) * unit * unit);
         capped_here += cell.capped;
       }

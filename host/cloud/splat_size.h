@@ -24,9 +24,10 @@ struct SplatSizes {
 /// its tangent plane (unfold.h); its cell there is what is nearer to it than to any of them; its area is the cell's,
 /// its radius covers the cell with `overlap` to spare, as blending weights fall to 0 at the rim of a splat. Boundaries
 /// of open surfaces are closed half a spacing outside the last points. Points at one site that face alike share a cell.
+/// `noisy`: where neighbours' normals differ without being a crease, discs are widened for the gaps that tilt leaves.
 /// `faces_agree`: normals have consistent signs, so that opposite ones tell the two sides of a thin sheet apart.
 SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
-                       bool faces_agree);
+                       bool faces_agree, bool noisy);
 
 /// Radius over covering radius of the cell.
 constexpr double splat_overlap = 1.2;

@@ -12,8 +12,25 @@ constexpr int band_rows = 16;
 constexpr double launch_seconds = 0.1;
 
 enum Channel {
-  c_r, c_g, c_b, c_a, c_direct_r, c_direct_g, c_direct_b, c_albedo_r, c_albedo_g, c_albedo_b,
-  c_nx, c_ny, c_nz, c_px, c_py, c_pz, c_z, c_id, channel_count
+  c_r,
+  c_g,
+  c_b,
+  c_a,
+  c_direct_r,
+  c_direct_g,
+  c_direct_b,
+  c_albedo_r,
+  c_albedo_g,
+  c_albedo_b,
+  c_nx,
+  c_ny,
+  c_nz,
+  c_px,
+  c_py,
+  c_pz,
+  c_z,
+  c_id,
+  channel_count
 };
 
 /// Film sums of one pixel into the band's planes: means, world units, world radiance.
@@ -38,8 +55,7 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
   for (int k = 0; k < 3; ++k)
     set(c_albedo_r + k, film[FILM_ALBEDO + k] / hits);
   Eigen::Vector3f normal(film[FILM_NORMAL], film[FILM_NORMAL + 1], film[FILM_NORMAL + 2]);
-  if (normal.squaredNorm() > 0.0f)
-    normal.normalize();
+  if (normal.squaredNorm() > 0.0f) normal.normalize();
   const Vector3d position = request.frame.to_world(
       Eigen::Vector3f(film[FILM_POSITION], film[FILM_POSITION + 1], film[FILM_POSITION + 2]) / hits);
   for (int k = 0; k < 3; ++k) {
@@ -67,8 +83,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   RenderParams params = lighting.params;
   params.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
   const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-  cl::Kernel kernel =
-      session.kernel("render/render.cl", build_options(request.variant, features), "render_pixels");
+  cl::Kernel kernel = session.kernel("render/render.cl", build_options(request.variant, features), "render_pixels");
   const auto device_params = session.upload(&params, 1);
   const auto materials = session.upload(lighting.materials);
   const auto delta = session.upload(lighting.delta);
@@ -81,8 +96,9 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   Buffer<float> film;
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
-    Band band{request.window.y0 + row, rows, width,
-              std::vector<std::vector<float>>(channel_count, std::vector<float>(static_cast<std::size_t>(width) * rows))};
+    Band band{
+        request.window.y0 + row, rows, width,
+        std::vector<std::vector<float>>(channel_count, std::vector<float>(static_cast<std::size_t>(width) * rows))};
     for (int column = 0; column < width;) {
       if (stop()) {
         totals.interrupted = true;
@@ -90,14 +106,12 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
       }
       const int launched = std::min(columns, width - column);
       const std::size_t pixels = static_cast<std::size_t>(launched) * rows;
-      if (film.size < pixels * FILM_CHANNELS)
-        film = session.allocate<float>(pixels * FILM_CHANNELS);
+      if (film.size < pixels * FILM_CHANNELS) film = session.allocate<float>(pixels * FILM_CHANNELS);
       const LaunchShape shape{{static_cast<std::size_t>(launched) * GRID_X, static_cast<std::size_t>(rows) * GRID_Y},
                               {GRID_X, GRID_Y}};
-      const double seconds =
-          session.launch(kernel, shape, pools.nodes, pools.begin_end, pools.points, device_params, materials, delta,
-                         emitters, film, static_cast<cl_uint>(request.window.x0 + column),
-                         static_cast<cl_uint>(request.window.y0 + row));
+      const double seconds = session.launch(
+          kernel, shape, pools.nodes, pools.begin_end, pools.points, device_params, materials, delta, emitters, film,
+          static_cast<cl_uint>(request.window.x0 + column), static_cast<cl_uint>(request.window.y0 + row));
       totals.device_seconds += seconds;
       const std::vector<float> sums = session.download(film, pixels * FILM_CHANNELS);
       for (int y = 0; y < rows; ++y)
@@ -112,7 +126,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
       column += launched;
       progress((static_cast<double>(row) * width + static_cast<double>(column) * rows) /
                (static_cast<double>(width) * height));
-      columns = seconds < 0.5 * launch_seconds ? std::min(columns * 2, 4096)
+      columns = seconds < 0.5 * launch_seconds   ? std::min(columns * 2, 4096)
                 : seconds > 2.0 * launch_seconds ? std::max(columns / 2, 8)
                                                  : columns;
     }

@@ -54,8 +54,7 @@ double accumulate_shares(Entries& entries, Weight weight) {
     sum += weight(entry);
     entry.cumulative = static_cast<float>(sum / total);
   }
-  if (!entries.empty())
-    entries.back().cumulative = 1.0f;
+  if (!entries.empty()) entries.back().cumulative = 1.0f;
   return total;
 }
 
@@ -100,8 +99,7 @@ HalfPlane half_plane(const Scene& scene) {
 } // namespace
 
 Vector3d up_of(const Scene& scene) {
-  if (scene.camera.up)
-    return *scene.camera.up;
+  if (scene.camera.up) return *scene.camera.up;
   return scene.up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();
 }
 
@@ -116,7 +114,9 @@ Camera device_camera(const Scene& scene, const Frame& frame) {
   return camera;
 }
 
-std::array<float, 16> world_to_camera(const Scene& scene) { return flat(camera_matrix(scene)); }
+std::array<float, 16> world_to_camera(const Scene& scene) {
+  return flat(camera_matrix(scene));
+}
 
 std::array<float, 16> world_to_ndc(const Scene& scene) {
   const HalfPlane half = half_plane(scene);
@@ -142,15 +142,15 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
     result.materials.push_back(material);
     power[m] = luminance.dot(scene.materials[m].emission) / scale;
   }
-  const auto emitted = [&](std::size_t p) { return power[static_cast<std::size_t>(points[p].material)] * points[p].area; };
+  const auto emitted = [&](std::size_t p) {
+    return power[static_cast<std::size_t>(points[p].material)] * points[p].area;
+  };
   for (std::size_t p = 0; p < points.size; ++p)
-    if (emitted(p) > 0.0)
-      result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
+    if (emitted(p) > 0.0) result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
   const double total = accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
   for (const LightSettings& entry : scene.lights) {
     const DeltaLight light = device_light(entry, frame, scale);
-    if (light.strength[0] + light.strength[1] + light.strength[2] > 0.0f)
-      result.delta.push_back(light);
+    if (light.strength[0] + light.strength[1] + light.strength[2] > 0.0f) result.delta.push_back(light);
   }
   accumulate_shares(result.delta, [&](const DeltaLight& l) {
     return luminance.dot(Vector3d(l.strength[0], l.strength[1], l.strength[2])) + 1e-30;

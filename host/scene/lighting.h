@@ -14,10 +14,10 @@ struct RadianceScale {
 
 struct DeviceLighting {
   RadianceScale radiance;
-  RenderParams params{};             ///< everything but step_delta
-  std::vector<Material> materials;   ///< one a material of the scene
-  std::vector<DeltaLight> delta;     ///< point and directional lights with power > 0
-  std::vector<Emitter> emitters;     ///< splats of emitting materials
+  RenderParams params{};           ///< everything but step_delta
+  std::vector<Material> materials; ///< one a material of the scene
+  std::vector<DeltaLight> delta;   ///< point and directional lights with power > 0
+  std::vector<Emitter> emitters;   ///< splats of emitting materials
   bool has_environment = false;
 };
 

@@ -1,8 +1,8 @@
 #include "host/scene/load_scene.h"
+#include "host/cloud/input_file.h"
 #include "host/scene/load_sections.h"
 #include "host/scene/overrides.h"
 #include "host/scene/scene_text.h"
-#include "host/cloud/input_file.h"
 #include <algorithm>
 #include <filesystem>
 

@@ -59,7 +59,8 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
     if (camera.up->norm() == 0.0) table->fail("up", "expected a direction, found [0, 0, 0]");
     camera.up->normalize();
     if (view.normalized().cross(*camera.up).norm() < limits::parallel_sine)
-      table->fail("up", "the camera looks along its up direction, so that no side of the picture is up; choose another");
+      table->fail("up",
+                  "the camera looks along its up direction, so that no side of the picture is up; choose another");
     return;
   }
   const Vector3d upright = up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();

@@ -25,9 +25,9 @@ enum class ColourSpace { srgb, linear };
 struct RenderSettings {
   int width = 640;
   int height = 480;
-  int spp = 32;             ///< samples a pixel
+  int spp = 32; ///< samples a pixel
   unsigned seed = 1;
-  double exposure = 0.0;    ///< stops, for the PNG only
+  double exposure = 0.0; ///< stops, for the PNG only
   int max_depth = 8;
   bool jitter = true;
 };
@@ -35,7 +35,7 @@ struct RenderSettings {
 struct CameraSettings {
   Vector3d position{0, 0, 0};
   Vector3d look_at{0, 0, -1};
-  double fov_deg = 40.0; ///< vertical
+  double fov_deg = 40.0;      ///< vertical
   std::optional<Vector3d> up; ///< instead of the scene's axis
   bool chosen = false;        ///< the file has a [camera]; without one the program finds a view
   SourcePlace place;
@@ -47,13 +47,13 @@ const char* name_of(MaterialType type);
 struct MaterialSettings {
   std::string name;
   MaterialType type = MaterialType::diffuse;
-  std::optional<Vector3d> albedo; ///< always linear; absent: the points' colours
-  Vector3d emission{0, 0, 0};     ///< radiance [W/m²/sr] of the front side
-  Vector3d reflectance{1, 1, 1};  ///< mirror
-  double ior = 1.5;               ///< glass
-  Vector3d absorption{0, 0, 0};   ///< glass, 1/length
-  Vector3d specular{0, 0, 0};     ///< phong
-  double exponent = 1.0;          ///< phong
+  std::optional<Vector3d> albedo;               ///< always linear; absent: the points' colours
+  Vector3d emission{0, 0, 0};                   ///< radiance [W/m²/sr] of the front side
+  Vector3d reflectance{1, 1, 1};                ///< mirror
+  double ior = 1.5;                             ///< glass
+  Vector3d absorption{0, 0, 0};                 ///< glass, 1/length
+  Vector3d specular{0, 0, 0};                   ///< phong
+  double exponent = 1.0;                        ///< phong
   ColourSpace colour_space = ColourSpace::srgb; ///< of the points' colours
   SourcePlace place;
 };
@@ -66,9 +66,9 @@ struct CloudSettings {
   Vector3d translate{0, 0, 0};
   NormalSource normals = NormalSource::automatic;
   RadiusSource radii = RadiusSource::automatic;
-  std::optional<double> radius;            ///< one radius for all points, world units after scaling
-  std::optional<Vector3d> viewpoint;       ///< sensor position in the file's coordinates
-  double spacing = 0.0;                    ///< for meshes: distance of the sampled splats, world units; 0 = chosen
+  std::optional<double> radius;      ///< one radius for all points, world units after scaling
+  std::optional<Vector3d> viewpoint; ///< sensor position in the file's coordinates
+  double spacing = 0.0;              ///< for meshes: distance of the sampled splats, world units; 0 = chosen
   SourcePlace place;
 };
 
@@ -132,9 +132,9 @@ struct CausticSettings {
 
 /// Form of the octree; the picture does not depend on it beyond rounding.
 struct OctreeSettings {
-  unsigned branching = 2;     ///< N of the N^d tree: 2 or 4
-  unsigned leaf_capacity = 32;///< splats, own and extra, that a cell may list undivided
-  unsigned max_depth = 21;    ///< levels below the root; N = 4 has 10 at most
+  unsigned branching = 2;      ///< N of the N^d tree: 2 or 4
+  unsigned leaf_capacity = 32; ///< splats, own and extra, that a cell may list undivided
+  unsigned max_depth = 21;     ///< levels below the root; N = 4 has 10 at most
 };
 
 enum class PoolStorage { buffer, image1d_buffer, image2d };

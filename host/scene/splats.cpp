@@ -44,10 +44,10 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material, bool& from_
 
 void place(PointCloud& cloud, const CloudSettings& settings) {
   const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
-  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) *
-                                    Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
-                                    Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
-                                       .toRotationMatrix();
+  const Eigen::Matrix3d rotation =
+      (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
+       Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+          .toRotationMatrix();
   const bool turned = !settings.rotate_deg.isZero();
   const Eigen::Matrix3f rotation_f = rotation.cast<float>();
   const auto scale = static_cast<float>(settings.scale);

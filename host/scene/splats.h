@@ -1,5 +1,6 @@
 #pragma once
-/// From a scene's description to its splats: clouds loaded, completed and placed, shapes sampled, one list in world units.
+/// From a scene's description to its splats: clouds loaded, completed and placed, shapes sampled, one list in world
+/// units.
 #include "host/scene/frame.h"
 #include "host/scene/scene.h"
 #include "octree/splat.h"
@@ -9,10 +10,10 @@ namespace pointgi {
 /// All splats of a scene. `cloud` has every attribute but triangles; `colour` is the diffuse reflectance, linear RGB.
 struct WorldSplats {
   PointCloud cloud;
-  std::vector<std::uint32_t> material;         ///< index into Scene::materials, one a point
-  std::vector<std::uint32_t> source;           ///< place of the point in its file or shape, one a point
-  std::vector<CloudReport> reports;            ///< one a [[cloud]], in the scene's order
-  bool has_point_colours = false;              ///< some colours come from the clouds themselves
+  std::vector<std::uint32_t> material; ///< index into Scene::materials, one a point
+  std::vector<std::uint32_t> source;   ///< place of the point in its file or shape, one a point
+  std::vector<CloudReport> reports;    ///< one a [[cloud]], in the scene's order
+  bool has_point_colours = false;      ///< some colours come from the clouds themselves
 };
 
 /// Reads a cloud (PLY) or mesh (anything else that assimp knows; sampled) and completes it; file's own coordinates.

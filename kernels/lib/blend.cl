@@ -1,9 +1,5 @@
 /* Overlapping discs near the first hit become one smooth surface: colour, normal and depth are means with a weight that
- * falls to zero at a disc's rim, or seams would show (method.md section 6).
- *
- * Where a surface bends away from the viewer, rims of discs from behind its horizon stick out, and a ray meets their
- * backs although the surface has none there. Such a hit takes the look of the front-facing discs around it; where there
- * are none, as inside an open surface, it is a back face. */
+ * falls to zero at a disc's rim, or seams would show (method.md section 6). */
 #include "lib/ray.cl"
 #include "lib/ray_splat.cl"
 
@@ -28,12 +24,8 @@ typedef struct Blend {
   float3 normal, albedo; /* weighted sums, as are weight and t */
   float weight, t;
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
-  float3 hit, middle; /* of the disc hit first */
   float radius;
   uint splat, material;
-  bool back; /* the ray met the back of the disc hit first */
-  float front_weight; /* of the front-facing discs around a hit on a back */
-  float3 front_normal, front_albedo;
 } Blend;
 
 inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) {
@@ -49,18 +41,6 @@ inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) 
   b->t += w * t;
 }
 
-/* For a hit on a back: adds the disc if it faces the viewer near `around`, the hit or the middle of the disc hit. */
-inline void blend_add_front(Blend* b, Ray ray, float3 around, float4 centre, float3 normal, float3 albedo) {
-  const float3 away = centre.xyz - around;
-  const float reach = centre.w + b->radius;
-  const float w = 1.0f - dot3(away, away) / (reach * reach);
-  if (w <= 0.0f || dot3(normal, ray.direction) >= 0.0f)
-    return;
-  b->front_weight += w;
-  b->front_normal += w * normal;
-  b->front_albedo += w * albedo;
-}
-
 /* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
 inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
   float q;
@@ -71,11 +51,6 @@ inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 nor
   b->t_first = t;
   /* At least a few float steps, so that the window is never empty. */
   b->t_end = t + fmax(BLEND_DEPTH * centre.w, 1e-6f * t);
-  b->hit = fma((float3)(t), ray.direction, ray.origin);
-  b->middle = centre.xyz;
-  b->back = dot3(normal.xyz, ray.direction) >= 0.0f;
-  b->front_weight = 0.0f;
-  b->front_normal = b->front_albedo = (float3)(0.0f);
   b->radius = centre.w;
   b->splat = splat;
   b->material = (uint)normal.w;
@@ -91,9 +66,5 @@ inline void blend_end(const Blend* b, Ray ray, Surface* s) {
   s->radius = b->radius;
   s->splat = b->splat;
   s->material = b->material;
-  s->front = !b->back || b->front_weight > 0.0f;
-  if (b->back && b->front_weight > 0.0f) {
-    s->normal = normalize3(b->front_normal);
-    s->albedo = b->front_albedo / b->front_weight;
-  }
+  s->front = dot3(b->normal_of_first, ray.direction) < 0.0f;
 }

@@ -25,12 +25,10 @@ bool disc_touches_cell(const Splat& splat, const float half[3], const Cell& cell
   float offset[3];
   for (int a = 0; a < 3; ++a) {
     offset[a] = cell.low[a] + 0.5f * cell.side - splat.position[a];
-    if (std::fabs(offset[a]) > half_side + half[a])
-      return false;
+    if (std::fabs(offset[a]) > half_side + half[a]) return false;
   }
   const float* n = splat.normal;
-  if (separation(n, offset, half_side) > 0.0f)
-    return false;
+  if (separation(n, offset, half_side) > 0.0f) return false;
   // The square's sides: any two unit vectors across the normal; Duff et al. 2017, "Building an orthonormal basis".
   const float sign = std::copysign(1.0f, n[2]);
   const float a = -1.0f / (sign + n[2]);

@@ -18,8 +18,8 @@ constexpr float cell_margin = 1e-6f;
 /// Half extents of the disc's bounding box: r * sqrt(n_b² + n_c²) per axis.
 void disc_half_extents(const Splat& splat, float half[3]);
 
-/// Whether the splat-aligned square around the disc meets the cell widened by `cell_margin` (separating axes: the cell's
-/// three, the disc's normal, the square's two sides). Conservative: true for every cell that the disc meets.
+/// Whether the splat-aligned square around the disc meets the cell widened by `cell_margin` (separating axes: the
+/// cell's three, the disc's normal, the square's two sides). Conservative: true for every cell that the disc meets.
 bool disc_touches_cell(const Splat& splat, const float half[3], const Cell& cell);
 
 } // namespace pointgi

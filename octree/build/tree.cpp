@@ -61,9 +61,8 @@ private:
     std::vector<std::uint32_t> borders(children_ + 1);
     const auto begin = keys_.begin() + node.first_point, end = begin + node.count;
     for (unsigned c = 0; c < children_; ++c) {
-      const auto at = std::partition_point(begin, end, [&](std::uint64_t key) {
-        return static_cast<unsigned>((key >> shift) & (children_ - 1)) < c;
-      });
+      const auto at = std::partition_point(
+          begin, end, [&](std::uint64_t key) { return static_cast<unsigned>((key >> shift) & (children_ - 1)) < c; });
       borders[c] = static_cast<std::uint32_t>(at - keys_.begin());
     }
     borders[children_] = node.first_point + node.count;
@@ -163,10 +162,9 @@ Tree build_tree(View<Splat> splats, const TreeOptions& options) {
   if (options.axis_bits < 1 || options.axis_bits > 2)
     throw std::invalid_argument("octree: N must be 2 or 4 (axis_bits 1 or 2)");
   if (options.max_depth > key_levels(options.axis_bits))
-    throw std::invalid_argument("octree: max_depth must be at most " +
-                                std::to_string(key_levels(options.axis_bits)) + " for this N");
-  if (options.leaf_capacity < 1)
-    throw std::invalid_argument("octree: leaf_capacity must be at least 1");
+    throw std::invalid_argument("octree: max_depth must be at most " + std::to_string(key_levels(options.axis_bits)) +
+                                " for this N");
+  if (options.leaf_capacity < 1) throw std::invalid_argument("octree: leaf_capacity must be at least 1");
   if (splats.size >= std::numeric_limits<std::uint32_t>::max())
     throw std::invalid_argument("octree: too many splats for 32-bit addresses");
   return Builder(splats, options).take();

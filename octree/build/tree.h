@@ -32,10 +32,10 @@ struct Tree {
   unsigned depth = 0;               ///< deepest level in use
 };
 
-/// Builds the tree over splats whose discs lie in the root cube. A splat belongs to the leaf of its centre and is also listed, as an
-/// extra splat, in every other leaf that its disc touches (method.md §2). A cell is divided while it lists more than
-/// leaf_capacity splats, is above max_depth, and dividing lowers the expected number of splats a ray tests there.
-/// Deterministic. Throws std::invalid_argument on options out of range or more than 2^32-2 splats.
+/// Builds the tree over splats whose discs lie in the root cube. A splat belongs to the leaf of its centre and is also
+/// listed, as an extra splat, in every other leaf that its disc touches (method.md §2). A cell is divided while it
+/// lists more than leaf_capacity splats, is above max_depth, and dividing lowers the expected number of splats a ray
+/// tests there. Deterministic. Throws std::invalid_argument on options out of range or more than 2^32-2 splats.
 Tree build_tree(View<Splat> splats, const TreeOptions& options);
 
 } // namespace pointgi

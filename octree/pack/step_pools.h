@@ -8,8 +8,8 @@ namespace pointgi {
 struct StepPools {
   std::vector<OctreeNode> nodes;
   std::vector<std::uint32_t> begin_end;
-  std::vector<OctreePoint> points;    ///< along the curve
-  std::vector<std::uint32_t> source;  ///< input index of each point of the pool
+  std::vector<OctreePoint> points;   ///< along the curve
+  std::vector<std::uint32_t> source; ///< input index of each point of the pool
   unsigned axis_bits = 1;
   unsigned depth = 0;
   std::size_t leaves = 0;

@@ -13,18 +13,15 @@ RayHit closest_hit(View<Splat> splats, const double origin[3], const double dire
       towards += static_cast<double>(s.normal[a]) * direction[a];
     }
     const double t = along / towards;
-    if (!(t > t_min && t < best.t))
-      continue;
+    if (!(t > t_min && t < best.t)) continue;
     double distance2 = 0.0;
     for (int a = 0; a < 3; ++a) {
       const double d = t * direction[a] - offset[a];
       distance2 += d * d;
     }
-    if (distance2 <= static_cast<double>(s.radius) * s.radius)
-      best = {t, static_cast<std::uint32_t>(i)};
+    if (distance2 <= static_cast<double>(s.radius) * s.radius) best = {t, static_cast<std::uint32_t>(i)};
   }
-  if (best.splat == RayHit::none)
-    best.t = -1.0;
+  if (best.splat == RayHit::none) best.t = -1.0;
   return best;
 }
 

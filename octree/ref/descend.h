@@ -7,8 +7,8 @@ namespace pointgi {
 
 template <std::size_t D>
 struct DescentStep {
-  unsigned child = 0;           ///< linearised x + N*y (+ N*N*z)
-  std::array<float, D> inside;  ///< position inside the child, [0,1)^D
+  unsigned child = 0;          ///< linearised x + N*y (+ N*N*z)
+  std::array<float, D> inside; ///< position inside the child, [0,1)^D
 };
 
 /// One step of the descent in an N^D tree: n = c + int(p*N), p = p*N - int(p*N).

@@ -18,7 +18,9 @@ double smooth_union(double a, double b, double k) {
   return b + (a - b) * h - k * h * (1.0 - h);
 }
 
-double smooth_cut(double body, double tool, double k) { return -smooth_union(-body, tool, k); }
+double smooth_cut(double body, double tool, double k) {
+  return -smooth_union(-body, tool, k);
+}
 
 double ellipsoid(const Vector3d& p, const Vector3d& radii) {
   const double k0 = p.cwiseQuotient(radii).norm(), k1 = p.cwiseQuotient(radii.cwiseProduct(radii)).norm();
@@ -52,14 +54,14 @@ double pedestal(const Vector3d& p) {
 
 double head(const Vector3d& q) { // about the middle of the skull, +z is the face
   double d = ellipsoid(q, {0.082, 0.105, 0.095});
-  d = smooth_union(d, ellipsoid(q - Vector3d(0, -0.075, 0.022), {0.052, 0.048, 0.06}), 0.035);      // jaw
+  d = smooth_union(d, ellipsoid(q - Vector3d(0, -0.075, 0.022), {0.052, 0.048, 0.06}), 0.035); // jaw
   for (const double side : {-1.0, 1.0}) {
     d = smooth_cut(d, ellipsoid(q - Vector3d(side * 0.034, 0.006, 0.094), {0.02, 0.013, 0.016}), 0.012); // eye sockets
     d = smooth_union(d, ellipsoid(q - Vector3d(side * 0.033, 0.004, 0.079), {0.013, 0.009, 0.01}), 0.004);
     d = smooth_union(d, ellipsoid(q - Vector3d(side * 0.085, -0.012, -0.002), {0.01, 0.026, 0.018}), 0.008); // ears
   }
-  d = smooth_union(d, capsule(q, {0, 0.018, 0.092}, {0, -0.03, 0.112}, 0.010), 0.014);               // nose
-  d = smooth_union(d, ellipsoid(q - Vector3d(0, -0.062, 0.086), {0.022, 0.007, 0.012}), 0.008);      // lips
+  d = smooth_union(d, capsule(q, {0, 0.018, 0.092}, {0, -0.03, 0.112}, 0.010), 0.014);          // nose
+  d = smooth_union(d, ellipsoid(q - Vector3d(0, -0.062, 0.086), {0.022, 0.007, 0.012}), 0.008); // lips
   const double curls = 0.007 * std::sin(75.0 * q.x()) * std::sin(70.0 * q.y() + 2.0) * std::sin(75.0 * q.z());
   const double hair = ellipsoid(q - Vector3d(0, 0.028, -0.018), {0.094, 0.098, 0.098}) + curls;
   const double forehead = ellipsoid(q - Vector3d(0, -0.03, 0.105), {0.085, 0.105, 0.075});
@@ -68,12 +70,12 @@ double head(const Vector3d& q) { // about the middle of the skull, +z is the fac
 
 double bust(const Vector3d& p) {
   const double angle = std::atan2(p.z(), p.x()), y = p.y();
-  double d = ellipsoid(p - Vector3d(0, 0.66, 0), {0.15, 0.17, 0.105});                               // chest
-  d = smooth_union(d, ellipsoid(p - Vector3d(0, 0.765, -0.005), {0.205, 0.062, 0.088}), 0.07);       // shoulders
+  double d = ellipsoid(p - Vector3d(0, 0.66, 0), {0.15, 0.17, 0.105});                         // chest
+  d = smooth_union(d, ellipsoid(p - Vector3d(0, 0.765, -0.005), {0.205, 0.062, 0.088}), 0.07); // shoulders
   const double folds = 0.006 * std::sin(11.0 * angle + 30.0 * y) + 0.003 * std::sin(23.0 * angle - 31.0 * y);
-  d = smooth_union(d, ellipsoid(p - Vector3d(0, 0.61, 0.005), {0.172, 0.125, 0.125}) + folds, 0.025); // robe
+  d = smooth_union(d, ellipsoid(p - Vector3d(0, 0.61, 0.005), {0.172, 0.125, 0.125}) + folds, 0.025);   // robe
   d = smooth_union(d, capsule(p, {-0.18, 0.77, 0.02}, {0.13, 0.58, 0.115}, 0.026) + 0.6 * folds, 0.03); // its sash
-  d = smooth_union(d, capsule(p, {0, 0.78, -0.01}, {0, 0.89, 0.005}, 0.05), 0.035);                  // neck
+  d = smooth_union(d, capsule(p, {0, 0.78, -0.01}, {0, 0.89, 0.005}, 0.05), 0.035);                     // neck
   // The head is turned a little to the right and bowed.
   Vector3d q = p - Vector3d(0, 0.965, 0.012);
   const double c = std::cos(0.42), s = std::sin(0.42);
@@ -84,7 +86,9 @@ double bust(const Vector3d& p) {
   return std::max(d, 0.505 - y); // cut where it stands on the column
 }
 
-double statue(const Vector3d& p) { return std::min(pedestal(p), bust(p)); }
+double statue(const Vector3d& p) {
+  return std::min(pedestal(p), bust(p));
+}
 
 Vector3d gradient(const Vector3d& p) {
   constexpr double h = 2e-4;
@@ -124,14 +128,12 @@ int main(int argc, char** argv) {
     Vector3d p(-0.27 + 0.54 * unit(g), -0.01 + 1.12 * unit(g), -0.27 + 0.54 * unit(g));
     for (int i = 0; i < 12; ++i)
       p -= 0.9 * statue(p) * gradient(p);
-    if (std::fabs(statue(p)) > 1e-4 || p.y() < 0.002)
-      continue;
+    if (std::fabs(statue(p)) > 1e-4 || p.y() < 0.002) continue;
     bool free = true;
     for (int k = 0; k < 27 && free; ++k)
       for (const std::size_t other : grid[cell(p, k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)])
         free = free && (cloud.position[other] - p).norm() > nearest;
-    if (!free)
-      continue;
+    if (!free) continue;
     grid[cell(p, 0, 0, 0)].push_back(cloud.size());
     const Vector3d n = gradient(p);
     cloud.position.push_back(p);

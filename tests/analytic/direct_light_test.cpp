@@ -19,26 +19,29 @@ std::string number(double value) {
 
 /// A floor of albedo 0.6 looked at from aside, a small patch around (x, 0, 0); `light` is appended.
 std::string floor_scene(double spacing, double x, const std::string& light, int spp = 64) {
-  return "version = 1\n[render]\nsize = [16, 16]\nspp = " + std::to_string(spp) +
-         "\n[camera]\nposition = [" + number(x) + ", 2.0, 2.0]\nlook_at = [" + number(x) +
+  return "version = 1\n[render]\nsize = [16, 16]\nspp = " + std::to_string(spp) + "\n[camera]\nposition = [" +
+         number(x) + ", 2.0, 2.0]\nlook_at = [" + number(x) +
          ", 0.0, 0.0]\nfov_deg = 0.5\n"
          "[[material]]\nname = \"floor\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.3, 0.9]\n"
          "[[shape]]\ntype = \"quad\"\ncorner = [-2.0, 0.0, -2.0]\nedge_u = [0.0, 0.0, 4.0]\nedge_v = [4.0, 0.0, 0.0]\n"
-         "spacing = " + number(spacing) + "\nmaterial = \"floor\"\n" + light;
+         "spacing = " +
+         number(spacing) + "\nmaterial = \"floor\"\n" + light;
 }
 
 /// Irradiance under a parallel disc light (truths.md §1).
 double disc_irradiance(double radiance, double radius, double h, double d) {
   const double s = h * h + d * d + radius * radius;
-  return pi * radiance / 2.0 * (1.0 - (h * h + d * d - radius * radius) / std::sqrt(s * s - 4.0 * radius * radius * d * d));
+  return pi * radiance / 2.0 *
+         (1.0 - (h * h + d * d - radius * radius) / std::sqrt(s * s - 4.0 * radius * radius * d * d));
 }
 
 } // namespace
 
 TEST_CASE("straight below a point light: rho/pi * P/(4 pi d^2)") {
   const double spacing = GENERATE(0.08, 0.04, 0.02), height = GENERATE(0.5, 1.5);
-  const Picture picture = render_text(floor_scene(
-      spacing, 0.0, "[[light]]\ntype = \"point\"\nposition = [0.0, " + number(height) + ", 0.0]\npower_w = [40.0, 20.0, 10.0]\n"));
+  const Picture picture = render_text(floor_scene(spacing, 0.0,
+                                                  "[[light]]\ntype = \"point\"\nposition = [0.0, " + number(height) +
+                                                      ", 0.0]\npower_w = [40.0, 20.0, 10.0]\n"));
   const double irradiance = 1.0 / (4.0 * pi * height * height);
   // 1 %: the issue's bound; the patch is 0.025 wide, over which cos/d² falls by less than 0.1 %.
   CHECK(mean(picture, "R") == Approx(0.6 / pi * 40.0 * irradiance).epsilon(0.01));
@@ -48,15 +51,15 @@ TEST_CASE("straight below a point light: rho/pi * P/(4 pi d^2)") {
 }
 
 TEST_CASE("a point light aside: I cos / d^2") {
-  const Picture picture = render_text(
-      floor_scene(0.03, 0.8, "[[light]]\ntype = \"point\"\nposition = [0.0, 0.6, 0.0]\npower_w = [40.0, 40.0, 40.0]\n"));
+  const Picture picture = render_text(floor_scene(
+      0.03, 0.8, "[[light]]\ntype = \"point\"\nposition = [0.0, 0.6, 0.0]\npower_w = [40.0, 40.0, 40.0]\n"));
   const double d2 = 0.8 * 0.8 + 0.6 * 0.6; // cos = 0.6
   CHECK(mean(picture, "R") == Approx(0.6 / pi * 40.0 / (4.0 * pi) * 0.6 / d2).epsilon(0.01));
 }
 
 TEST_CASE("a directional light: E cos") {
-  const Picture picture = render_text(
-      floor_scene(0.03, 0.0, "[[light]]\ntype = \"directional\"\ndirection = [3.0, -4.0, 0.0]\nirradiance = [2.0, 2.0, 2.0]\n"));
+  const Picture picture = render_text(floor_scene(
+      0.03, 0.0, "[[light]]\ntype = \"directional\"\ndirection = [3.0, -4.0, 0.0]\nirradiance = [2.0, 2.0, 2.0]\n"));
   CHECK(mean(picture, "R") == Approx(0.6 / pi * 2.0 * 0.8).epsilon(0.001)); // no discretisation in it: rounding only
 }
 
@@ -106,7 +109,8 @@ TEST_CASE("the inside of a closed box without light is black, whatever shines ou
       "[camera]\nposition = [0.05, 0.9, 0.9]\nlook_at = [-0.1, -0.3, -0.2]\nfov_deg = 100.0\n"
       "[environment]\nradiance = [1.0, 1.0, 1.0]\n"
       "[[material]]\nname = \"wall\"\ntype = \"diffuse\"\nalbedo = [0.9, 0.9, 0.9]\n"
-      "[[shape]]\ntype = \"box\"\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0, 1.0]\ninward = true\nspacing = 0.05\nmaterial = \"wall\"\n"
+      "[[shape]]\ntype = \"box\"\nmin = [-1.0, -1.0, -1.0]\nmax = [1.0, 1.0, 1.0]\ninward = true\nspacing = "
+      "0.05\nmaterial = \"wall\"\n"
       "[[light]]\ntype = \"point\"\nposition = [1.5, 1.2, 1.3]\npower_w = [1000.0, 1000.0, 1000.0]\n"
       "[[light]]\ntype = \"directional\"\ndirection = [-1.0, -0.9, -0.8]\nirradiance = [10.0, 10.0, 10.0]\n");
   CHECK(mean(picture, "A") == 1.0);
@@ -115,10 +119,12 @@ TEST_CASE("the inside of a closed box without light is black, whatever shines ou
 
 TEST_CASE("emission is seen as it is, from its front only") {
   const std::string lamp =
-      "version = 1\n[render]\nsize = [8, 8]\n[camera]\nposition = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nfov_deg = 2.0\n"
+      "version = 1\n[render]\nsize = [8, 8]\n[camera]\nposition = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nfov_deg "
+      "= 2.0\n"
       "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\nemission = [7.0, 5.0, 3.0]\n"
       "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.5\nspacing = 0.05\nmaterial = \"lamp\"\n";
-  const Picture front = render_text(lamp + "normal = [0.0, 0.0, 1.0]\n"), back = render_text(lamp + "normal = [0.0, 0.0, -1.0]\n");
+  const Picture front = render_text(lamp + "normal = [0.0, 0.0, 1.0]\n"),
+                back = render_text(lamp + "normal = [0.0, 0.0, -1.0]\n");
   CHECK(mean(front, "R") == Approx(7.0).epsilon(1e-5));
   CHECK(mean(front, "B") == Approx(3.0).epsilon(1e-5));
   CHECK(largest(back, "R") == 0.0);

@@ -29,11 +29,13 @@ std::string ball_scene(double s, double m = 0.0, double power = 30.0, const std:
          "\nlook_at = " + at(0.0, 0.4, 0.0) +
          "\nfov_deg = 40.0\n"
          "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
-         "[[shape]]\ntype = \"sphere\"\ncentre = " + at(0.0, 0.5, 0.0) + "\nradius = " + number(0.5 * s) + "\nspacing = " +
-         number(0.04 * s) + "\nmaterial = \"grey\"\n[[shape]]\ntype = \"quad\"\ncorner = " + at(-1.5, 0.0, -1.5) +
-         "\nedge_u = " + along(0.0, 0.0, 3.0) + "\nedge_v = " + along(3.0, 0.0, 0.0) + "\nspacing = " + number(0.05 * s) +
-         "\nmaterial = \"grey\"\n[[light]]\ntype = \"point\"\nposition = " + at(0.7, 1.9, 0.8) + "\npower_w = " +
-         numbers(power * s * s, power * s * s, power * s * s) + "\n";
+         "[[shape]]\ntype = \"sphere\"\ncentre = " +
+         at(0.0, 0.5, 0.0) + "\nradius = " + number(0.5 * s) + "\nspacing = " + number(0.04 * s) +
+         "\nmaterial = \"grey\"\n[[shape]]\ntype = \"quad\"\ncorner = " + at(-1.5, 0.0, -1.5) +
+         "\nedge_u = " + along(0.0, 0.0, 3.0) + "\nedge_v = " + along(3.0, 0.0, 0.0) +
+         "\nspacing = " + number(0.05 * s) +
+         "\nmaterial = \"grey\"\n[[light]]\ntype = \"point\"\nposition = " + at(0.7, 1.9, 0.8) +
+         "\npower_w = " + numbers(power * s * s, power * s * s, power * s * s) + "\n";
 }
 
 /// Share of the samples' weight that changed: mean |a - b| over mean b. A rounded coordinate may move a sample across a
@@ -127,9 +129,10 @@ TEST_CASE("a seed gives the same bits again, another seed other ones") {
 }
 
 TEST_CASE("lights on a surface and in the camera give finite pixels") {
-  const std::string light =
-      GENERATE("position = [0.0, 0.0, 0.0]", "position = [0.0, 1.0, 0.0]", "position = [0.3, 1.2, 3.0]", "position = [0.0, 0.5, 0.0]");
-  const Picture picture = render_text(ball_scene(1.0) + "[[light]]\ntype = \"point\"\n" + light + "\npower_w = [9.0, 9.0, 9.0]\n");
+  const std::string light = GENERATE("position = [0.0, 0.0, 0.0]", "position = [0.0, 1.0, 0.0]",
+                                     "position = [0.3, 1.2, 3.0]", "position = [0.0, 0.5, 0.0]");
+  const Picture picture =
+      render_text(ball_scene(1.0) + "[[light]]\ntype = \"point\"\n" + light + "\npower_w = [9.0, 9.0, 9.0]\n");
   for (const float value : picture.channels.at("R"))
     REQUIRE(std::isfinite(value));
 }
@@ -137,7 +140,8 @@ TEST_CASE("lights on a surface and in the camera give finite pixels") {
 TEST_CASE("ten thousand lights") {
   std::string lights;
   for (int i = 0; i < 10'000; ++i)
-    lights += "[[light]]\ntype = \"point\"\nposition = [" + number(0.0002 * i - 1.0) + ", 2.0, 0.5]\npower_w = [0.01, 0.01, 0.01]\n";
+    lights += "[[light]]\ntype = \"point\"\nposition = [" + number(0.0002 * i - 1.0) +
+              ", 2.0, 0.5]\npower_w = [0.01, 0.01, 0.01]\n";
   const Picture picture = render_text(ball_scene(1.0, 0.0, 0.0) + lights);
   CHECK(mean(picture, "R") > 0.01);
   for (const float value : picture.channels.at("R"))

@@ -16,12 +16,10 @@ Picture render_scan(const std::string& path, bool jitter = true) {
   RenderOptions options;
   options.input = path;
   options.output = folder.file("scan.exr");
-  options.size = "320x240";
+  options.size = "640x480";
   options.quiet = true;
-  if (!jitter)
-    options.overrides = {"render.jitter=false"};
-  if (run_render(options) != ExitCode::done)
-    throw std::runtime_error("the picture was not finished");
+  if (!jitter) options.overrides = {"render.jitter=false"};
+  if (run_render(options) != ExitCode::done) throw std::runtime_error("the picture was not finished");
   return read_exr(options.output);
 }
 
@@ -66,7 +64,8 @@ double mesh_coverage(const PointCloud& mesh, const Picture& picture) {
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     double out[4];
     for (int c = 0; c < 4; ++c)
-      out[c] = m[c] * mesh.position[i].x() + m[4 + c] * mesh.position[i].y() + m[8 + c] * mesh.position[i].z() + m[12 + c];
+      out[c] =
+          m[c] * mesh.position[i].x() + m[4 + c] * mesh.position[i].y() + m[8 + c] * mesh.position[i].z() + m[12 + c];
     // NDC runs upwards, rows run downwards; samples sit at half steps.
     image[i] = {out[0] / out[3] * columns - 0.5, (1.0 - out[1] / out[3]) * rows - 0.5};
   }
@@ -92,7 +91,8 @@ double mesh_coverage(const PointCloud& mesh, const Picture& picture) {
 } // namespace
 
 TEST_CASE("scans: the right side lit, no pinholes") {
-  for (const char* name : {"bunny.ply", "dragon.ply", "horse.ply", "lion_takanawa.ply", "kinect_region_growing_rgb.ply", "pond.ply"}) {
+  for (const char* name :
+       {"bunny.ply", "dragon.ply", "horse.ply", "lion_takanawa.ply", "kinect_region_growing_rgb.ply", "pond.ply"}) {
     const auto path = scan_path(name);
     if (!path) {
       WARN(name << " is not there: skipped");
@@ -122,6 +122,7 @@ TEST_CASE("scans: coverage equals the triangle mesh's within 2 %") {
     const double truth = mesh_coverage(mesh, picture);
     CHECK(truth > 0.05);
     CHECK(mean(picture, "A") == Approx(truth).epsilon(0.02));
-    WARN(name << ": coverage of the splats over the mesh's " << mean(picture, "A") / truth << ", pinholes " << pinhole_share(picture));
+    WARN(name << ": coverage of the splats over the mesh's " << mean(picture, "A") / truth << ", pinholes "
+              << pinhole_share(picture));
   }
 }

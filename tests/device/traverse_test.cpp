@@ -47,8 +47,7 @@ std::size_t differences(const std::vector<RayAnswer>& a, const std::vector<RayAn
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool same_splat = a[i].splat == b[i].splat;
     const bool tie = a[i].splat != NO_SPLAT && b[i].splat != NO_SPLAT && a[i].t == b[i].t;
-    if (!(same_splat || tie) || !(std::fabs(a[i].t - b[i].t) <= 1e-5f))
-      ++count;
+    if (!(same_splat || tie) || !(std::fabs(a[i].t - b[i].t) <= 1e-5f)) ++count;
   }
   return count;
 }
@@ -81,8 +80,7 @@ TEST_CASE("the device's linear scan agrees with the host's in double precision")
   const auto answers = trace_all(splats, rays);
   std::size_t different = 0, counted = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (i % 5 == 2 || i % 5 == 4)
-      continue; // grazing rays and starts on a plane: there float rightly decides otherwise
+    if (i % 5 == 2 || i % 5 == 4) continue; // grazing rays and starts on a plane: there float rightly decides otherwise
     const double o[3] = {rays[i].origin[0], rays[i].origin[1], rays[i].origin[2]};
     const double d[3] = {rays[i].direction[0], rays[i].direction[1], rays[i].direction[2]};
     const RayHit truth = closest_hit(splats, o, d, 0.0, 8.0);
@@ -95,8 +93,12 @@ TEST_CASE("the device's linear scan agrees with the host's in double precision")
 
 TEST_CASE("rays end: one splat, coincident splats, discs larger than the cells") {
   std::vector<Splat> splats;
-  SECTION("one") { splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.2f)}; }
-  SECTION("many in one place") { splats.assign(3000, make_splat(0.3f, 0.6f, 0.5f, 1, 2, 3, 1e-4f)); }
+  SECTION("one") {
+    splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.2f)};
+  }
+  SECTION("many in one place") {
+    splats.assign(3000, make_splat(0.3f, 0.6f, 0.5f, 1, 2, 3, 1e-4f));
+  }
   SECTION("all of them huge") {
     splats = random_splats(200, 9);
     for (Splat& s : splats)

@@ -41,7 +41,8 @@ inline std::vector<Splat> sphere_splats(std::size_t count, float radius = 0.3f) 
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 1.0 - 2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     const double s = std::sqrt(1.0 - z * z), a = golden * static_cast<double>(i);
-    const auto nx = static_cast<float>(s * std::cos(a)), ny = static_cast<float>(s * std::sin(a)), nz = static_cast<float>(z);
+    const auto nx = static_cast<float>(s * std::cos(a)), ny = static_cast<float>(s * std::sin(a)),
+               nz = static_cast<float>(z);
     splats.push_back(make_splat(0.5f + radius * nx, 0.5f + radius * ny, 0.5f + radius * nz, nx, ny, nz,
                                 radius * static_cast<float>(1.2 * std::sqrt(4.0 / static_cast<double>(count)))));
   }

@@ -63,8 +63,7 @@ inline std::vector<RayQuery> hard_rays(const std::vector<Splat>& splats, std::si
         o[a] = static_cast<float>(corner(g)) / 64.0f;
         d[a] = static_cast<float>(corner(g)) / 64.0f - o[a] + (a == 0 ? 1e-30f : 0.0f);
       }
-      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 1e-6f)
-        d[axis_of(g)] = 1.0f;
+      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 1e-6f) d[axis_of(g)] = 1.0f;
       break;
     default: // starting on the plane of a disc
       for (int a = 0; a < 3; ++a)

@@ -22,8 +22,7 @@ Picture render_text(const std::string& toml, Adjust adjust) {
   std::ofstream(options.input) << toml;
   adjust(options);
   const ExitCode code = run_render(options);
-  if (code != ExitCode::done)
-    throw std::runtime_error("the picture was not finished");
+  if (code != ExitCode::done) throw std::runtime_error("the picture was not finished");
   return read_exr(options.output);
 }
 
@@ -47,7 +46,8 @@ inline double largest(const Picture& picture, const std::string& channel) {
 }
 
 /// |a - b| over (|b| + floor), the largest over the pixels.
-inline double largest_relative_difference(const Picture& a, const Picture& b, const std::string& channel, double floor) {
+inline double largest_relative_difference(const Picture& a, const Picture& b, const std::string& channel,
+                                          double floor) {
   double most = 0.0;
   const auto &x = a.channels.at(channel), &y = b.channels.at(channel);
   for (std::size_t i = 0; i < x.size(); ++i)

@@ -12,8 +12,7 @@ inline std::optional<std::string> scan_path(const std::string& name) {
   const char* folder = std::getenv("POINTGI_SCANS");
   const std::filesystem::path path =
       std::filesystem::path(folder != nullptr ? folder : POINTGI_SOURCE_DIR "/../shared/scans") / name;
-  if (std::filesystem::exists(path))
-    return path.string();
+  if (std::filesystem::exists(path)) return path.string();
   return std::nullopt;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 PointCloud sized(PointCloud cloud) {
   const Sites sites(cloud.position);
-  SplatSizes sizes = splat_sizes(sites, cloud.normal, site_spacing(sites, cloud.normal), true);
+  SplatSizes sizes = splat_sizes(sites, cloud.normal, site_spacing(sites, cloud.normal), true, false);
   cloud.radius = std::move(sizes.radius);
   cloud.area = std::move(sizes.area);
   return cloud;

@@ -23,7 +23,8 @@ TEST_CASE("a disc touches the cells that its points lie in") {
   for (const Splat& s : random_splats(400, 2)) {
     const float* n = s.normal;
     const float sign = std::copysign(1.0f, n[2]), a = -1.0f / (sign + n[2]), b = n[0] * n[1] * a;
-    const float u[3] = {1.0f + sign * n[0] * n[0] * a, sign * b, -sign * n[0]}, v[3] = {b, sign + n[1] * n[1] * a, -n[1]};
+    const float u[3] = {1.0f + sign * n[0] * n[0] * a, sign * b, -sign * n[0]},
+                v[3] = {b, sign + n[1] * n[1] * a, -n[1]};
     for (int k = 0; k < 50; ++k) {
       const float r = s.radius * std::sqrt(unit(g)), phi = 6.2831853f * unit(g), side = 1.0f / 32.0f;
       Cell cell{{}, side};
@@ -37,8 +38,8 @@ TEST_CASE("a disc touches the cells that its points lie in") {
 TEST_CASE("cells beside, above and diagonally off a disc are not touched") {
   const Splat flat = make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f);
   CHECK(touches(flat, {{0.55f, 0.45f, 0.45f}, 0.1f}));
-  CHECK_FALSE(touches(flat, {{0.65f, 0.45f, 0.45f}, 0.1f}));  // beside
-  CHECK_FALSE(touches(flat, {{0.45f, 0.45f, 0.51f}, 0.1f}));  // above its plane
+  CHECK_FALSE(touches(flat, {{0.65f, 0.45f, 0.45f}, 0.1f})); // beside
+  CHECK_FALSE(touches(flat, {{0.45f, 0.45f, 0.51f}, 0.1f})); // above its plane
   const Splat tilted = make_splat(0.5f, 0.5f, 0.5f, 1, 1, 0, 0.1f);
   CHECK(touches(tilted, {{0.52f, 0.43f, 0.5f}, 0.05f}));
   CHECK_FALSE(touches(tilted, {{0.53f, 0.53f, 0.5f}, 0.04f})); // inside its bounding box, off its plane

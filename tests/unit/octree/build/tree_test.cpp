@@ -23,9 +23,15 @@ TEST_CASE("every tree obeys the invariants: branching, capacity, depth") {
 TEST_CASE("degenerate clouds end with bounded depth") {
   std::vector<Splat> splats;
   SECTION("none") {}
-  SECTION("one") { splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f)}; }
-  SECTION("two in one place") { splats.assign(2, make_splat(0.3f, 0.3f, 0.3f, 0, 0, 1, 0.01f)); }
-  SECTION("100,000 tiny ones in one place") { splats.assign(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 1, 1e-9f)); }
+  SECTION("one") {
+    splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f)};
+  }
+  SECTION("two in one place") {
+    splats.assign(2, make_splat(0.3f, 0.3f, 0.3f, 0, 0, 1, 0.01f));
+  }
+  SECTION("100,000 tiny ones in one place") {
+    splats.assign(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 1, 1e-9f));
+  }
   SECTION("a line") {
     for (int i = 0; i < 500; ++i)
       splats.push_back(make_splat(0.1f + 0.0016f * static_cast<float>(i), 0.5f, 0.5f, 0, 0, 1, 0.001f));

@@ -15,31 +15,56 @@ StepPools sound_pools() {
 
 std::size_t first_of_type(const StepPools& pools, unsigned type) {
   for (std::size_t i = 0; i < pools.nodes.size(); ++i)
-    if (NODE_TYPE(pools.nodes[i].header) == type && (type != NODE_LEAF || pools.nodes[i].extra > 1))
-      return i;
+    if (NODE_TYPE(pools.nodes[i].header) == type && (type != NODE_LEAF || pools.nodes[i].extra > 1)) return i;
   return 0;
 }
 
 } // namespace
 
-TEST_CASE("the verifier accepts what the packer makes") { CHECK_NOTHROW(verify(sound_pools())); }
+TEST_CASE("the verifier accepts what the packer makes") {
+  CHECK_NOTHROW(verify(sound_pools()));
+}
 
 TEST_CASE("the verifier finds each planted fault") {
   StepPools pools = sound_pools();
   const std::size_t leaf = first_of_type(pools, NODE_LEAF), empty = first_of_type(pools, NODE_EMPTY);
   OctreeNode& node = pools.nodes[leaf];
-  SECTION("a lost extra splat") { pools.begin_end[node.address + 1] = pools.begin_end[node.address + 2]; }
-  SECTION("an extra splat out of range") { pools.begin_end[node.address + 1] = 1u << 30; }
-  SECTION("a shifted beginP") { ++pools.begin_end[node.address]; }
-  SECTION("a wrong closing entry") { ++pools.begin_end.back(); }
-  SECTION("a wrong level") { node.header += 1u << 24; }
-  SECTION("a wrong count") { ++node.count; }
-  SECTION("an unknown type") { node.header |= 3u << 30; }
-  SECTION("a child block outside the pool") { pools.nodes[0].address = 1u << 30; }
-  SECTION("a child block used twice") { pools.nodes[0].address = pools.nodes[first_of_type(pools, NODE_INTERNAL) + 8].address; }
-  SECTION("a leaf called empty") { node = pools.nodes[empty]; }
-  SECTION("a point moved out of its cell") { pools.points[pools.points.size() / 2].position[0] += 0.25f; }
-  SECTION("a splat grown into more cells") { pools.points[pools.points.size() / 2].radius *= 6.0f; }
+  SECTION("a lost extra splat") {
+    pools.begin_end[node.address + 1] = pools.begin_end[node.address + 2];
+  }
+  SECTION("an extra splat out of range") {
+    pools.begin_end[node.address + 1] = 1u << 30;
+  }
+  SECTION("a shifted beginP") {
+    ++pools.begin_end[node.address];
+  }
+  SECTION("a wrong closing entry") {
+    ++pools.begin_end.back();
+  }
+  SECTION("a wrong level") {
+    node.header += 1u << 24;
+  }
+  SECTION("a wrong count") {
+    ++node.count;
+  }
+  SECTION("an unknown type") {
+    node.header |= 3u << 30;
+  }
+  SECTION("a child block outside the pool") {
+    pools.nodes[0].address = 1u << 30;
+  }
+  SECTION("a child block used twice") {
+    pools.nodes[0].address = pools.nodes[first_of_type(pools, NODE_INTERNAL) + 8].address;
+  }
+  SECTION("a leaf called empty") {
+    node = pools.nodes[empty];
+  }
+  SECTION("a point moved out of its cell") {
+    pools.points[pools.points.size() / 2].position[0] += 0.25f;
+  }
+  SECTION("a splat grown into more cells") {
+    pools.points[pools.points.size() / 2].radius *= 6.0f;
+  }
   CHECK_THROWS_AS(verify(pools), std::logic_error);
 }
 

@@ -6,7 +6,8 @@ using namespace pointgi;
 using namespace pointgi::test;
 
 TEST_CASE("the linear scan meets discs where geometry says") {
-  const std::vector<Splat> splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f), make_splat(0.5f, 0.5f, 0.7f, 0, 0, 1, 0.1f)};
+  const std::vector<Splat> splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f),
+                                     make_splat(0.5f, 0.5f, 0.7f, 0, 0, 1, 0.1f)};
   const double down[3] = {0, 0, -1}, along[3] = {1, 0, 0};
   const double above[3] = {0.55, 0.5, 1.0}, rim[3] = {0.5999, 0.5, 1.0}, past[3] = {0.6001, 0.5, 1.0};
   CHECK(closest_hit(splats, above, down, 0, 8).splat == 1);

@@ -1,5 +1,5 @@
-#include "octree/ref/descend.h"
 #include "octree/build/cell_key.h"
+#include "octree/ref/descend.h"
 #include "tests/support/clouds.h"
 #include <catch2/catch.hpp>
 #include <random>
