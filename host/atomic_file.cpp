@@ -83,8 +83,12 @@ AtomicFile::AtomicFile(const std::string& final_path) : final_path_(final_path) 
   if (replaces && !S_ISREG(old.st_mode))
     throw Error(ExitCode::output, final_path + ": is a device or a pipe, which cannot be written safely; "
                                                "choose the name of a regular file");
-  if (replaces && ::faccessat(AT_FDCWD, target_path_.c_str(), W_OK, AT_EACCESS) != 0)
-    throw Error(ExitCode::output, final_path + ": is write-protected; choose another name or run `chmod u+w` on it");
+  if (replaces) { // a rename asks the folder only; opening asks the file
+    const int old_file = ::open(target_path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (old_file < 0)
+      throw Error(ExitCode::output, final_path + ": is write-protected; choose another name or run `chmod u+w` on it");
+    ::close(old_file);
+  }
 
   // Some tens of attempts: a collision of 32 random bits in one process id is already a curiosity.
   for (int attempt = 0; attempt < 32 && fd_ < 0; ++attempt) {

@@ -2,7 +2,8 @@
 #define POINTGI_SHARED_OCTREE_TYPES_H
 #include "shared/scalar.h"
 /* The three pools of the octree as the device reads them (method.md section 2). Positions and lengths are in units of
- * the root cube, [0,1)^3. All children of a node are stored, empty ones too, next to each other along x + N*y + N*N*z. */
+ * the root cube, [0,1)^3. All children of a node are stored, empty ones too, next to each other along x + N*y + N*N*z.
+ */
 
 #define NODE_EMPTY 0u    /* no splat touches the cell */
 #define NODE_LEAF 1u     /* owns an entry in the Begin-End pool */
@@ -12,14 +13,15 @@
 #define NODE_LEVEL(header) (((header) >> 24) & 63u)
 #define NODE_HEADER(type, level) (((type) << 30) | ((level) << 24))
 
-/* Finest cell of the tree: 2^MAX_AXIS_BITS a side. A Morton key holds 3*21 bits, and a float in [0,1) holds 21 bits of a
- * coordinate exactly, which exact stepping needs. */
+/* Finest cell of the tree: 2^MAX_AXIS_BITS a side. A Morton key holds 3*21 bits, and a float in [0,1) holds 21 bits of
+ * a coordinate exactly, which exact stepping needs. */
 #define MAX_AXIS_BITS 21
 
 /* Node pool: one 128-bit texel a node. */
 typedef struct OctreeNode {
   pg_uint header;  /* bytes 0-3: bits 31-30 type, 29-24 level (root 0), 23-0 zero */
-  pg_uint address; /* bytes 4-7: internal: pool index of the first child; leaf: index of beginP in the Begin-End pool; empty: 0 */
+  pg_uint address; /* bytes 4-7: internal: pool index of the first child; leaf: index of beginP in the Begin-End pool;
+                      empty: 0 */
   pg_uint extra;   /* bytes 8-11: leaf: number of extra splats; internal: index of the first own point; empty: 0 */
   pg_uint count;   /* bytes 12-15: own points of the leaf, or of the subtree; empty: 0 */
 } OctreeNode;

@@ -23,15 +23,15 @@ typedef struct Camera {
 } Camera;
 
 typedef struct RenderParams {
-  Camera camera;           /* bytes 0-63 */
-  float environment[3];    /* bytes 64-75: radiance from every direction, scaled */
-  float emitted_power;     /* bytes 76-79: sum of the emitters' luminance * area, scaled */
-  pg_uint samples;         /* bytes 80-83: samples a pixel */
-  pg_uint seed;            /* bytes 84-87 */
-  pg_uint jitter;          /* bytes 88-91: 0: samples at the centres of their strata */
-  pg_uint delta_lights;    /* bytes 92-95: number of point and directional lights */
-  pg_uint emitters;        /* bytes 96-99: number of emitting splats */
-  float step_delta;        /* bytes 100-103: the absolute-delta variant's delta, root cube units */
+  Camera camera;        /* bytes 0-63 */
+  float environment[3]; /* bytes 64-75: radiance from every direction, scaled */
+  float emitted_power;  /* bytes 76-79: sum of the emitters' luminance * area, scaled */
+  pg_uint samples;      /* bytes 80-83: samples a pixel */
+  pg_uint seed;         /* bytes 84-87 */
+  pg_uint jitter;       /* bytes 88-91: 0: samples at the centres of their strata */
+  pg_uint delta_lights; /* bytes 92-95: number of point and directional lights */
+  pg_uint emitters;     /* bytes 96-99: number of emitting splats */
+  float step_delta;     /* bytes 100-103: the absolute-delta variant's delta, root cube units */
   pg_uint pad0;
   pg_uint pad1;
 } RenderParams;
@@ -42,7 +42,8 @@ typedef struct RenderParams {
 typedef struct DeltaLight {
   float vector[3];   /* bytes 0-11: point: position, root cube; directional: unit vector towards the light */
   pg_uint type;      /* bytes 12-15 */
-  float strength[3]; /* bytes 16-27: point: intensity [W/sr] over the cube's side squared; directional: irradiance [W/m2]; scaled */
+  float strength[3]; /* bytes 16-27: point: intensity [W/sr] over the cube's side squared; directional: irradiance
+                        [W/m2]; scaled */
   float cumulative;  /* bytes 28-31: share of this and all earlier lights in the total, (0,1]; the last is 1 */
 } DeltaLight;
 
