@@ -1,6 +1,8 @@
 #include "host/app/commands.h"
 #include "host/app/interrupt.h"
+#include "host/scene/nearest.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -42,6 +44,20 @@ void limit_threads(int threads) {
   if (threads <= 0) return;
   omp_set_num_threads(threads);
   setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+}
+
+/// CLI11 answers an unknown command by asking for one.
+void require_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const std::string near = nearest(word, names);
+  throw Error(ExitCode::usage, "unknown command \"" + word + "\"; " +
+                                   (near.empty() ? "the commands are: " + list : "did you mean \"" + near + "\"?"));
 }
 
 int run(int argc, char** argv) {
@@ -86,6 +102,7 @@ int run(int argc, char** argv) {
   devices_command->add_flag("--check", check, "compile every kernel on each");
   devices_command->add_option("--device", checked_device, "only this one");
 
+  if (argc > 1 && argv[1][0] != '-') require_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

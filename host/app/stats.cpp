@@ -1,11 +1,7 @@
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
-#include "host/error.h"
-#include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
-#include <unistd.h>
 
 namespace pointgi {
 
@@ -17,13 +13,7 @@ std::uint64_t host_peak_bytes() {
 
 void write_text(const std::string& path, const std::string& text) {
   AtomicFile file(path);
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = ::write(file.fd(), text.data() + done, text.size() - done);
-    if (written < 0)
-      throw Error(ExitCode::output,
-                  path + ": cannot write: " + std::strerror(errno) + "; make room, or choose another place");
-    done += static_cast<std::size_t>(written);
-  }
+  file.write(text.data(), text.size());
   file.commit();
 }
 

@@ -6,13 +6,23 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 namespace pointgi {
 
 namespace {
 
-constexpr char magic[8] = {'p', 'g', 'i', 'k', 'b', 'i', 'n', '1'};
+constexpr char magic[8] = {'p', 'g', 'i', 'k', 'b', 'i', 'n', '2'};
+
+struct Header {
+  char magic_word[8];
+  std::uint64_t key_size;
+  std::uint64_t binary_size;
+  std::uint64_t binary_hash; ///< drivers crash on a binary that was cut short
+};
+
+std::uint64_t hash_of(const std::vector<unsigned char>& binary) {
+  return fnv1a(std::string(binary.begin(), binary.end()));
+}
 
 std::string file_of(const std::string& key) {
   const std::string folder = cache_folder();
@@ -20,17 +30,6 @@ std::string file_of(const std::string& key) {
   char name[32];
   std::snprintf(name, sizeof name, "/%016llx.bin", static_cast<unsigned long long>(fnv1a(key)));
   return folder + "/kernels" + name;
-}
-
-bool write_all(int fd, const void* data, std::size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = ::write(fd, at, size);
-    if (written <= 0) return false;
-    at += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return true;
 }
 
 } // namespace
@@ -53,18 +52,18 @@ std::string cache_folder() {
   return {};
 }
 
-// File: magic, 64-bit key size, key, binary up to the end.
+// File: header, key, binary.
 std::optional<std::vector<unsigned char>> load_binary(const std::string& key) {
   std::ifstream file(file_of(key), std::ios::binary);
-  char found_magic[sizeof magic];
-  std::uint64_t key_size = 0;
-  if (!file.read(found_magic, sizeof found_magic) || std::memcmp(found_magic, magic, sizeof magic) != 0 ||
-      !file.read(reinterpret_cast<char*>(&key_size), sizeof key_size) || key_size != key.size())
+  Header header{};
+  if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
+      std::memcmp(header.magic_word, magic, sizeof magic) != 0 || header.key_size != key.size())
     return std::nullopt;
   std::string found_key(key.size(), '\0');
   if (!file.read(found_key.data(), static_cast<std::streamsize>(key.size())) || found_key != key) return std::nullopt;
   std::vector<unsigned char> binary((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (binary.empty()) return std::nullopt;
+  if (binary.empty() || binary.size() != header.binary_size || hash_of(binary) != header.binary_hash)
+    return std::nullopt;
   return binary;
 }
 
@@ -74,11 +73,13 @@ void store_binary(const std::string& key, const std::vector<unsigned char>& bina
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
   try {
+    Header header{{}, key.size(), binary.size(), hash_of(binary)};
+    std::memcpy(header.magic_word, magic, sizeof magic);
     AtomicFile file(path);
-    const std::uint64_t key_size = key.size();
-    if (write_all(file.fd(), magic, sizeof magic) && write_all(file.fd(), &key_size, sizeof key_size) &&
-        write_all(file.fd(), key.data(), key.size()) && write_all(file.fd(), binary.data(), binary.size()))
-      file.commit();
+    file.write(&header, sizeof header);
+    file.write(key.data(), key.size());
+    file.write(binary.data(), binary.size());
+    file.commit();
   } catch (const Error&) {
     // Documented: without a cache the next start builds again.
   }

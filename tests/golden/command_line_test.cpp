@@ -1,0 +1,216 @@
+/// What the command line promises: exit codes, messages, files (interface.md).
+#include "host/image/picture_writer.h"
+#include "tests/support/run_program.h"
+#include "tests/support/scans.h"
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace pointgi;
+using namespace pointgi::test;
+using Catch::Contains;
+
+namespace {
+
+nlohmann::json json_of(const std::string& path) {
+  std::ifstream file(path);
+  return nlohmann::json::parse(file);
+}
+
+} // namespace
+
+TEST_CASE("render writes picture, stats and trace, and names the picture on stdout") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("ball.exr");
+  const Run run = run_program("render " + scene + " -o " + out + " --stats " + folder.file("s.json") + " --trace " +
+                              folder.file("t.json"));
+  REQUIRE(run.code == 0);
+  CHECK(run.out == out + "\n" + folder.file("ball.png") + "\n");
+  const Picture picture = read_exr(out);
+  CHECK(picture.width == 40);
+  for (const char* channel : {"R", "G", "B", "A", "Direct.R", "Albedo.G", "N.X", "P.Z", "Z", "PointId"})
+    CHECK(picture.channels.count(channel) == 1);
+  CHECK(picture.attributes.number.at("samplesPerPixel") == 4.0);
+  CHECK(picture.attributes.number.count("renderTimeSeconds") == 1);
+  for (const char* name : {"software", "pointgi/device", "pointgi/scene_hash", "pointgi/quality"})
+    CHECK(picture.attributes.text.count(name) == 1);
+  const auto stats = json_of(folder.file("s.json"));
+  CHECK(stats["scene"]["points"] > 1000);
+  CHECK(stats["render"]["eye_rays"] == 40 * 30 * 4);
+  std::vector<std::string> ran, skipped;
+  for (const auto& stage : stats["stages"])
+    (stage["ran"] ? ran : skipped).push_back(stage["name"]);
+  CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "render", "image"});
+  CHECK(skipped == std::vector<std::string>{"vmap", "fmm", "photon"});
+  CHECK(json_of(folder.file("t.json"))["traceEvents"].size() == ran.size());
+}
+
+TEST_CASE("wrong usage is exit code 2 and says what is right") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  struct Case {
+    std::string arguments, says;
+  };
+  const std::vector<Case> cases = {
+      {"", "subcommand"},
+      {"paint", "paint"},
+      {"render", "required"},
+      {"render " + scene + " --size 10", "--size: expected WIDTHxHEIGHT"},
+      {"render " + scene + " --size 10x", "--size: expected WIDTHxHEIGHT"},
+      {"render " + scene + " --pixelbounds 0,50,0,10", "0 <= x0 < x1 <= 40"},
+      {"render " + scene + " --pixelbounds 5,5,0,10", "x0 < x1"},
+      {"render " + scene + " --quality best", "draft"},
+      {"render " + scene + " --integrator path", "pointgi"},
+      {"render " + scene + " --threads 0", "--threads"},
+      {"render " + scene + " --set render.spp", "render.spp"},
+  };
+  for (const Case& c : cases) {
+    const Run run = run_program(c.arguments);
+    CAPTURE(c.arguments, run.err);
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Contains(c.says));
+  }
+}
+
+TEST_CASE("wrong input is exit code 3 and names the file") {
+  const TemporaryFolder folder;
+  const std::string glass =
+      folder.write("glass.toml", std::string(small_scene()) + "[[material]]\nname = \"g\"\ntype = \"glass\"\n");
+  struct Case {
+    std::string arguments, says;
+  };
+  const std::vector<Case> cases = {
+      {"render " + folder.file("none.toml"), "none.toml"},
+      {"render " + folder.file("none.ply"), "none.ply"},
+      {"info " + folder.file("none.ply"), "none.ply"},
+      {"render " + folder.write("empty.ply", ""), "empty.ply"},
+      {"render " + folder.write("text.xyz", "1 2 3\n"), "text.xyz"},
+      {"render " + glass, "type \"glass\" cannot be rendered by this version"},
+      {"render " + folder.write("a.toml", small_scene()) + " --spp 0", "render.spp"},
+      {"render " + folder.write("b.toml", small_scene()) + " --set render.sp=3", "did you mean \"spp\""},
+  };
+  for (const Case& c : cases) {
+    const Run run = run_program(c.arguments + " -o " + folder.file("out.exr"));
+    CAPTURE(c.arguments, run.err);
+    CHECK(run.code == (c.arguments.rfind("info", 0) == 0 ? 2 : 3)); // info has no -o
+    if (run.code == 3) CHECK_THAT(run.err, Contains(c.says));
+  }
+  CHECK(run_program("info " + folder.file("none.ply")).code == 3);
+}
+
+TEST_CASE("unknown devices and unwritable places have exit codes of their own") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  const Run device = run_program("render " + scene + " --device quantum -o " + folder.file("x.exr"));
+  CHECK(device.code == 4);
+  CHECK_THAT(device.err, Contains("quantum") && Contains("0  "));
+  const Run environment = run_program("render " + scene + " -o " + folder.file("x.exr"), "POINTGI_DEVICE=quantum");
+  CHECK(environment.code == 4);
+  const Run flag_wins =
+      run_program("render " + scene + " --device 0 -o " + folder.file("x.exr"), "POINTGI_DEVICE=quantum");
+  CHECK(flag_wins.code == 0);
+  CHECK(run_program("render " + scene + " -o " + folder.file("missing/x.exr")).code == 5);
+  CHECK(run_program("render " + scene + " -o " + folder.file("x.jpg")).code == 5);
+  CHECK(run_program("render " + scene + " -o " + folder.file("y.exr") + " --stats /dev/full").code == 5);
+}
+
+TEST_CASE("a second start builds no kernel") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  const std::string cache = "POINTGI_CACHE_DIR=" + folder.file("cache");
+  const std::string arguments = "render " + scene + " -o " + folder.file("x.exr") + " --stats " + folder.file("s.json");
+  REQUIRE(run_program(arguments, cache).code == 0);
+  CHECK(json_of(folder.file("s.json"))["programs"]["compiled"] == 1);
+  REQUIRE(run_program(arguments, cache).code == 0);
+  CHECK(json_of(folder.file("s.json"))["programs"]["compiled"] == 0);
+  CHECK(json_of(folder.file("s.json"))["programs"]["from_cache"] == 1);
+  // A damaged cache is built anew, not trusted.
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.file("cache")))
+    if (entry.is_regular_file())
+      std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 3);
+  REQUIRE(run_program(arguments, cache).code == 0);
+}
+
+TEST_CASE("the same bits on 1, 2 and 4 threads") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  std::vector<float> first;
+  for (const char* threads : {"1", "2", "4"}) {
+    REQUIRE(run_program("render " + scene + " --threads " + threads + " -o " + folder.file("x.exr")).code == 0);
+    const auto values = read_exr(folder.file("x.exr")).channels.at("R");
+    if (first.empty()) first = values;
+    CHECK(values == first);
+  }
+}
+
+TEST_CASE("an interrupted render keeps a partial picture; a killed one keeps the old picture") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("x.exr");
+  const std::string slow = "render " + scene + " --size 600x450 --spp 1024 -o " + out;
+  REQUIRE(run_program("render " + scene + " -o " + out).code == 0);
+  // Whenever the signal comes, the old picture or a whole partial one is there.
+  const Run killed = run_program(slow, "timeout -s KILL 2");
+  CHECK(killed.code != 0);
+  CHECK(read_exr(out).width == 40);
+  const Run interrupted = run_program(slow, "timeout --preserve-status -s INT 3");
+  CHECK(interrupted.code == 130);
+  CHECK_THAT(interrupted.err, Contains("interrupted"));
+  const Picture partial = read_exr(out);
+  CHECK(partial.width == 600);
+  CHECK(partial.height == 450);
+}
+
+TEST_CASE("kernels can be edited, and their errors name our files") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  std::filesystem::copy(POINTGI_SOURCE_DIR "/kernels", folder.file("kernels"),
+                        std::filesystem::copy_options::recursive);
+  const std::string use = "POINTGI_KERNEL_DIR=" + folder.file("kernels") + " POINTGI_CACHE_DIR=" + folder.file("cache");
+  const std::string arguments = "render " + scene + " -o " + folder.file("x.exr");
+  CHECK(run_program(arguments, use).code == 0);
+  std::ofstream(folder.file("kernels/lib/blend.cl"), std::ios::app) << "\nfloat broken(void) { return nonsense; }\n";
+  const Run run = run_program(arguments, use);
+  CHECK(run.code == 4);
+  CHECK_THAT(run.err, Contains("kernels/lib/blend.cl:") && Contains("nonsense") && Contains("options:"));
+  std::filesystem::remove(folder.file("kernels/lib/blend.cl"));
+  CHECK(run_program(arguments, use).code == 2);
+}
+
+TEST_CASE("dumped kernels hold what the scene needs and no more") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  REQUIRE(
+      run_program("render " + scene + " -o " + folder.file("x.exr") + " --dump-kernels " + folder.file("dump")).code ==
+      0);
+  std::ifstream file(folder.file("dump/render_render.cl"));
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string options = text.substr(0, text.find('\n'));
+  CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT"));
+  CHECK_THAT(text, Contains("#line 1 \"kernels/lib/ray_splat.cl\""));
+}
+
+TEST_CASE("info tells what a file holds; devices list and check") {
+  const TemporaryFolder folder;
+  const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                                      "property float y\nproperty float z\nproperty uchar weird\n"
+                                                      "end_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n");
+  const Run info = run_program("info " + cloud);
+  CHECK(info.code == 0);
+  CHECK_THAT(info.out, Contains("3 in the file") && Contains("weird") && Contains("not used") && Contains("estimated"));
+  const Run devices = run_program("devices --json");
+  CHECK(devices.code == 0);
+  CHECK(nlohmann::json::parse(devices.out).size() >= 1);
+}
+
+TEST_CASE("every sample file of other projects ends with 0 or 3 and a place in its message") {
+  const auto folder = scan_path("parser");
+  if (!folder) {
+    WARN("the parser samples are not there: skipped");
+    return;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(*folder)) {
+    const Run run = run_program("info '" + entry.path().string() + "'", "ulimit -v 4000000; timeout 60");
+    CAPTURE(entry.path().filename().string(), run.err);
+    CHECK((run.code == 0 || run.code == 3));
+    if (run.code == 3) CHECK_THAT(run.err, Contains("line") || Contains("byte") || Contains(":"));
+  }
+}
