@@ -16,6 +16,15 @@ struct Build {
 /// Every kernel file in every variant that the program can ask for.
 std::vector<Build> every_build(const DeviceInfo& info) {
   std::vector<Build> builds{{"traverse/brute_force.cl", ""}};
+  for (const unsigned lanes : {8u, 16u}) {
+    if (!info.is_cpu) continue; // the wide form's precondition
+    TraversalVariant variant;
+    variant.form = TraversalForm::wide;
+    variant.lanes = lanes;
+    builds.push_back({"traverse/trace.cl", build_options(variant)});
+    builds.push_back({"render/render.cl", build_options(variant, {})});
+    builds.push_back({"render/render.cl", build_options(variant, {true, true, true})});
+  }
   for (const PoolStorage storage : {PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d})
     for (const Stepping stepping : {Stepping::exact, Stepping::absolute_delta})
       for (const unsigned axis_bits : {1u, 2u}) {

@@ -59,7 +59,8 @@ ExitCode run_info(const std::string& file) {
   }
   const Frame frame = frame_of(cloud);
   const std::vector<Splat> placed = place_in_cube(splats, frame);
-  const StepPools pools = build_pools(placed, scene.octree);
+  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, true);
+  const OctreeSummary octree = summary_of(build_pools(placed, scene.octree, variant));
   std::printf("  splats      %zu\n", cloud.size());
   std::printf("  bounds      [%.9g, %.9g, %.9g] to [%.9g, %.9g, %.9g]\n", low.x(), low.y(), low.z(), high.x(), high.y(),
               high.z());
@@ -68,10 +69,11 @@ ExitCode run_info(const std::string& file) {
               std::sqrt(area / static_cast<double>(cloud.size())));
   std::printf("  radius      %.4g median, %.4g at 99 %%, %.4g largest\n", percentile(cloud.radius, 0.5),
               percentile(cloud.radius, 0.99), percentile(cloud.radius, 1.0));
-  std::printf("  octree      %zu nodes, %zu leaves, depth %u, %.2f extra splats a splat\n", pools.nodes.size(),
-              pools.leaves, pools.depth, static_cast<double>(pools.extra_splats) / static_cast<double>(cloud.size()));
-  std::printf("  memory      %.1f MiB of pools, %.0f bytes a splat\n", static_cast<double>(pools.bytes()) / 1048576.0,
-              static_cast<double>(pools.bytes()) / static_cast<double>(cloud.size()));
+  std::printf("  octree      %s form: %zu nodes, %zu leaves, depth %u, %.2f extra splats a splat\n", octree.form,
+              octree.nodes, octree.leaves, octree.depth,
+              static_cast<double>(octree.extra_splats) / static_cast<double>(cloud.size()));
+  std::printf("  memory      %.1f MiB of pools, %.0f bytes a splat\n", static_cast<double>(octree.bytes) / 1048576.0,
+              static_cast<double>(octree.bytes) / static_cast<double>(cloud.size()));
   return ExitCode::done;
 }
 

@@ -10,16 +10,19 @@ bool is_scene_file(const std::string& file) {
   return file.size() >= end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
 }
 
-unsigned axis_bits_of(const OctreeSettings& settings) {
-  return settings.branching == 4 ? 2 : 1;
-}
-
-StepPools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings) {
-  const unsigned axis_bits = axis_bits_of(settings);
-  const TreeOptions options{axis_bits, settings.leaf_capacity, std::min(settings.max_depth, key_levels(axis_bits))};
-  StepPools pools = pack_step(splats, build_tree(splats, options));
+OctreePools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings,
+                        const TraversalVariant& variant) {
+  const bool wide = variant.form == TraversalForm::wide;
+  TreeOptions options;
+  options.axis_bits = variant.axis_bits;
+  // Flat around these on the scans; larger leaves keep the pools below 90 bytes a splat.
+  options.leaf_capacity = settings.leaf_capacity != 0 ? settings.leaf_capacity : wide ? 64 : 32;
+  options.max_depth = std::min(settings.max_depth, key_levels(variant.axis_bits));
+  options.listing = wide ? Listing::centres : Listing::overlaps;
+  const Tree tree = build_tree(splats, options);
+  OctreePools pools = wide ? OctreePools(pack_wide(splats, tree, variant.lanes)) : OctreePools(pack_step(splats, tree));
 #ifndef NDEBUG
-  verify(pools);
+  std::visit([](const auto& p) { verify(p); }, pools);
 #endif
   return pools;
 }

@@ -101,11 +101,11 @@ PictureAttributes attributes_of(const Scene& scene, const RenderOptions& options
 }
 
 /// What the picture depends on: splats, lights, camera and samples, as the device reads them.
-std::uint64_t hash_of(const StepPools& pools, const DeviceLighting& lighting) {
+std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) {
   const auto bytes = [](const auto& v) {
     return std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
   };
-  std::uint64_t hash = fnv1a(bytes(pools.points));
+  std::uint64_t hash = fnv1a(bytes(points_of(pools)));
   hash = fnv1a(bytes(lighting.delta), hash);
   hash = fnv1a(bytes(lighting.materials), hash);
   return fnv1a(std::string(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
@@ -133,6 +133,7 @@ ExitCode run_render(const RenderOptions& options) {
     throw Error(ExitCode::usage,
                 "--integrator " + options.integrator + ": this version has the integrator \"pointgi\" only");
   StageLog stages;
+  Stats stats;
   const auto close_to_1 = [](double factor, int spp) {
     return std::max(1, static_cast<int>(std::lround(spp * factor)));
   };
@@ -160,22 +161,22 @@ ExitCode run_render(const RenderOptions& options) {
   stop_if_asked();
 
   stages.start("octree");
-  const StepPools pools = build_pools(placed, scene.octree);
+  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
+  const OctreePools pools = build_pools(placed, scene.octree, variant);
   placed = {};
-  std::vector<std::uint32_t> ids(pools.source.size());
-  for (std::size_t k = 0; k < ids.size(); ++k)
-    ids[k] = splats.source[pools.source[k]];
-  stages.finish(pools.nodes.size(), "nodes");
+  std::vector<std::uint32_t> ids(source_of(pools));
+  for (std::uint32_t& id : ids)
+    id = splats.source[id];
+  stats.octree = summary_of(pools);
+  stages.finish(stats.octree.nodes, "nodes");
   stop_if_asked();
   skip_indirect_stages(scene, stages);
 
-  const TraversalVariant variant{scene.traversal, axis_bits_of(scene.octree)};
   const DevicePools on_device = upload_pools(session, pools, variant.storage);
-  const DeviceLighting lighting = device_lighting(scene, frame, pools.points);
+  const DeviceLighting lighting = device_lighting(scene, frame, points_of(pools));
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window, film_channels(),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
   stages.start("render");
-  Stats stats;
   {
     Progress progress("render", options.quiet);
     stats.render = render(
@@ -199,8 +200,6 @@ ExitCode run_render(const RenderOptions& options) {
   if (!options.stats_file.empty()) {
     stats.command = "render";
     stats.scene = &scene;
-    stats.points = pools.points.size();
-    stats.pools = &pools;
     stats.session = &session;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
@@ -212,7 +211,7 @@ ExitCode run_render(const RenderOptions& options) {
                  window.y1 - window.y0);
     return ExitCode::interrupted;
   }
-  spdlog::info("{} points, {:.1f} million rays, {} ({} on the device)", pools.points.size(),
+  spdlog::info("{} points, {:.1f} million rays, {} ({} on the device)", stats.octree.points,
                1e-6 * static_cast<double>(stats.render.rays), duration_text(stages.seconds()),
                duration_text(stats.render.device_seconds));
   return ExitCode::done;

@@ -25,12 +25,14 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   out["command"] = stats.command;
   out["device"] = {{"name", info.name}, {"vendor", info.vendor}, {"driver", info.driver}, {"opencl", info.opencl}};
   out["scene"] = {
-      {"points", stats.points}, {"materials", stats.scene->materials.size()}, {"lights", stats.scene->lights.size()}};
-  out["octree"] = {{"nodes", stats.pools->nodes.size()},
-                   {"leaves", stats.pools->leaves},
-                   {"depth", stats.pools->depth},
-                   {"extra_splats", stats.pools->extra_splats},
-                   {"bytes", stats.pools->bytes()}};
+      {"points", stats.octree.points}, {"materials", stats.scene->materials.size()}, {"lights", stats.scene->lights.size()}};
+  const OctreeSummary& octree = stats.octree;
+  out["octree"] = {{"form", octree.form},
+                   {"nodes", octree.nodes},
+                   {"leaves", octree.leaves},
+                   {"depth", octree.depth},
+                   {"extra_splats", octree.extra_splats},
+                   {"bytes", octree.bytes}};
   const RenderTotals& r = stats.render;
   out["render"] = {
       {"rays", r.rays},

@@ -2,7 +2,7 @@
 #include "host/app/stages.h"
 #include "host/cl/session.h"
 #include "host/passes/render.h"
-#include "octree/pack/step_pools.h"
+#include "octree/pack/pools.h"
 
 namespace pointgi {
 
@@ -10,8 +10,7 @@ namespace pointgi {
 struct Stats {
   std::string command;
   const Scene* scene = nullptr;
-  std::size_t points = 0;
-  const StepPools* pools = nullptr;
+  OctreeSummary octree;
   const Session* session = nullptr;
   RenderTotals render;
   double seconds = 0.0;

@@ -24,13 +24,22 @@ DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage s
   device.nodes = upload_texels(session, pools.nodes.data(), pools.nodes.size(), false, storage);
   device.points = upload_texels(session, pools.points.data(), pools.points.size() * POINT_TEXELS, true, storage);
   if (storage == PoolStorage::buffer) {
-    device.begin_end = session.upload(pools.begin_end).handle;
+    device.leaves = session.upload(pools.begin_end).handle;
   } else { // four entries a texel (kernels/lib/pools.cl)
     std::vector<std::uint32_t> padded = pools.begin_end;
     padded.resize((padded.size() + 3) / 4 * 4);
-    device.begin_end = upload_texels(session, padded.data(), padded.size() / 4, false, storage);
+    device.leaves = upload_texels(session, padded.data(), padded.size() / 4, false, storage);
   }
   return device;
+}
+
+DevicePools upload_pools(Session& session, const WidePools& pools) {
+  return {session.upload(pools.nodes).handle, session.upload(pools.blocks).handle, session.upload(pools.points).handle};
+}
+
+DevicePools upload_pools(Session& session, const OctreePools& pools, PoolStorage storage) {
+  if (const auto* wide = std::get_if<WidePools>(&pools)) return upload_pools(session, *wide);
+  return upload_pools(session, std::get<StepPools>(pools), storage);
 }
 
 } // namespace pointgi

@@ -110,7 +110,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
       const LaunchShape shape{{static_cast<std::size_t>(launched) * GRID_X, static_cast<std::size_t>(rows) * GRID_Y},
                               {GRID_X, GRID_Y}};
       const double seconds = session.launch(
-          kernel, shape, pools.nodes, pools.begin_end, pools.points, device_params, materials, delta, emitters, film,
+          kernel, shape, pools.nodes, pools.leaves, pools.points, device_params, materials, delta, emitters, film,
           static_cast<cl_uint>(request.window.x0 + column), static_cast<cl_uint>(request.window.y0 + row));
       totals.device_seconds += seconds;
       const std::vector<float> sums = session.download(film, pixels * FILM_CHANNELS);

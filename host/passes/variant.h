@@ -5,10 +5,14 @@
 
 namespace pointgi {
 
-/// The user's settings and what the kernels must know of the tree.
+/// The user's settings and what the kernels must know of the tree. `form` is no longer automatic.
 struct TraversalVariant : TraversalSettings {
   unsigned axis_bits = 1; ///< log2 N of the tree
 };
+
+/// The variant for a device: `automatic` becomes wide on CPU devices when the settings allow it (N = 2, no setting of
+/// the step form chosen), else step. Throws Error(usage) when the wide form is asked for with N = 4.
+TraversalVariant choose_variant(const TraversalSettings& settings, const OctreeSettings& octree, bool device_is_cpu);
 
 /// What the scene has, so that kernels are built without what it has not (method.md §7).
 struct SceneFeatures {

@@ -111,7 +111,15 @@ void load_octree(const TableReader& root, OctreeSettings& octree) {
 void load_traversal(const TableReader& root, TraversalSettings& traversal) {
   const std::optional<TableReader> table = root.table("traversal");
   if (!table) return;
-  table->allow_only({"storage", "stepping", "step_delta"});
+  table->allow_only({"form", "lanes", "storage", "stepping", "step_delta"});
+  if (const auto form = table->choice("form", {"auto", "step", "wide"}))
+    traversal.form = *form == "auto"   ? TraversalForm::automatic
+                     : *form == "step" ? TraversalForm::step
+                                       : TraversalForm::wide;
+  if (const auto lanes = table->integer("lanes", {8, 16})) {
+    if (*lanes != 8 && *lanes != 16) table->fail("lanes", "expected 8 or 16, found " + std::to_string(*lanes));
+    traversal.lanes = static_cast<unsigned>(*lanes);
+  }
   if (const auto storage = table->choice("storage", {"buffer", "image1d_buffer", "image2d"}))
     traversal.storage = *storage == "buffer"           ? PoolStorage::buffer
                         : *storage == "image1d_buffer" ? PoolStorage::image1d_buffer

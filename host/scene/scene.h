@@ -132,19 +132,26 @@ struct CausticSettings {
 
 /// Form of the octree; the picture does not depend on it beyond rounding.
 struct OctreeSettings {
-  unsigned branching = 2;      ///< N of the N^d tree: 2 or 4
-  unsigned leaf_capacity = 32; ///< splats, own and extra, that a cell may list undivided
-  unsigned max_depth = 21;     ///< levels below the root; N = 4 has 10 at most
+  unsigned branching = 2;     ///< N of the N^d tree: 2 or 4
+  unsigned leaf_capacity = 0; ///< splats that a cell may list undivided; 0: 32 in the step form, 64 in the wide form
+  unsigned max_depth = 21;    ///< levels below the root; N = 4 has 10 at most
 };
 
+enum class TraversalForm {
+  automatic, ///< wide on CPU devices, step elsewhere
+  step,      ///< cells, Begin-End pool, extra splats (method.md §2, §6)
+  wide       ///< tight child boxes, blocks of splats; N = 2, plain buffers, devices with vectors a work-item
+};
 enum class PoolStorage { buffer, image1d_buffer, image2d };
 enum class Stepping {
   exact,         ///< integer cells; the default
   absolute_delta ///< the thesis' absolute delta, for trade measurements (method.md §6)
 };
 
-/// Kernel variant of the traversal.
+/// Kernel variant of the traversal. Storage and stepping are of the step form.
 struct TraversalSettings {
+  TraversalForm form = TraversalForm::automatic;
+  unsigned lanes = 8; ///< splats a block of the wide form, 8 or 16
   PoolStorage storage = PoolStorage::buffer;
   Stepping stepping = Stepping::exact;
   double step_delta = 0.05; ///< world units; absolute_delta only

@@ -1,4 +1,6 @@
 /* Access to the octree's pools, the one place that knows how they are stored.
+ *   TRAVERSAL_FORM FORM_STEP: node pool, Begin-End pool, point pool, stored as POOL_STORAGE says;
+ *                  FORM_WIDE: WideNodes, blocks, point pool, always plain buffers
  *   POOL_BUFFER  plain buffers
  *   POOL_IMAGE1D image1d_buffer_t, RGBA 32-bit texels
  *   POOL_IMAGE2D image2d_t of 2^POOL_WIDTH_LOG2 texels a row, RGBA 32-bit texels
@@ -15,8 +17,19 @@
 #endif
 #include "shared/octree_types.h"
 
-#define POOL_ARGS node_pool, begin_end_pool, point_pool
+#ifndef TRAVERSAL_FORM
+#define TRAVERSAL_FORM FORM_STEP
+#endif
+#define FORM_STEP 0
+#define FORM_WIDE 1
 
+#if TRAVERSAL_FORM == FORM_WIDE
+#define POOL_ARGS node_pool, block_pool, point_pool
+#define POOL_PARAMS \
+  const __global WideNode *restrict node_pool, const __global float *restrict block_pool, const __global float4 *restrict point_pool
+#define pool_point_texel(i) (point_pool[i])
+#else
+#define POOL_ARGS node_pool, begin_end_pool, point_pool
 #if POOL_STORAGE == POOL_BUFFER
 #define POOL_PARAMS \
   const __global uint4 *restrict node_pool, const __global uint *restrict begin_end_pool, const __global float4 *restrict point_pool
@@ -45,4 +58,4 @@ inline uint pool_component(uint4 texel, uint i) {
 #error "POOL_STORAGE must be POOL_BUFFER, POOL_IMAGE1D or POOL_IMAGE2D"
 #endif
 #endif
-
+#endif

@@ -4,14 +4,13 @@
  *                      exit plane follows without rounding, so the ray moves on at every scale
  *   STEP_ABSOLUTE      the thesis' way: the position moves past the exit plane by an absolute delta and is located anew;
  *                      thin cells are jumped over when delta is large, and the ray may stall when it is small
- * The interface of every traversal: trace_closest, trace_any, trace_blended. */
+ * What every form gives: trace_closest, trace_any, blend_others (kernels/lib/traversal.cl). */
 #include "lib/octree_descent.cl"
 #include "lib/ray_splat.cl"
 #include "lib/blend.cl"
 
 #define FINEST_CELLS (1 << MAX_AXIS_BITS)
 #define FINEST_SIDE 0x1p-21f /* 1 / FINEST_CELLS */
-#define MAX_RIMS 16 /* rims of discs, one behind another, that a ray passes before it is taken for a miss */
 
 /* Where a walk stands: the leaf, and the part of the ray inside it. */
 typedef struct Walk {
@@ -136,42 +135,11 @@ inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   return false;
 }
 
-/* Whether a ray that met the back of this disc met a part of it that is not there: where a surface bends away from the
- * viewer, rims of discs from behind its horizon stick out. The middle of such a disc is hidden behind a front side; that
- * of a disc on the inside of an open surface is not. */
-inline bool sticks_out(POOL_PARAMS, Ray ray, float3 middle) {
-  ray.direction = middle - ray.origin;
-  ray.t_max = sqrt(dot3(ray.direction, ray.direction));
-  ray.direction /= ray.t_max;
-  const Hit hit = trace_closest(POOL_ARGS, ray);
-  return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f;
-}
-
-/* Nearest hit that counts for a viewer: trace_closest without rims that stick out. */
-inline Hit trace_visible(POOL_PARAMS, Ray ray) {
-  Ray rest = ray;
-  for (int k = 0; k < MAX_RIMS; ++k) {
-    const Hit hit = trace_closest(POOL_ARGS, rest);
-    if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f ||
-        !sticks_out(POOL_ARGS, ray, pool_point_texel(POINT_TEXELS * hit.splat).xyz))
-      return hit;
-    rest.t_min = hit.t;
-  }
-  const Hit none = {ray.t_max, NO_SPLAT};
-  return none;
-}
-
-/* The surface near the first hit: overlapping splats blended (kernels/lib/blend.cl). A splat is listed in every cell
- * that it touches; it counts in the one cell that holds its hit, so it counts once. */
-inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface) {
-  const Hit first = trace_visible(POOL_ARGS, ray);
-  if (first.splat == NO_SPLAT)
-    return false;
-  Blend blend;
-  blend_begin(&blend, ray, first.splat, pool_point_texel(POINT_TEXELS * first.splat),
-              pool_point_texel(POINT_TEXELS * first.splat + 1u), pool_point_texel(POINT_TEXELS * first.splat + 2u).xyz);
+/* Adds all discs but the first that are hit in the blend's window. A splat is listed in every cell that it touches; it
+ * counts in the one cell that holds its hit, so it counts once. */
+inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   Walk walk;
-  walk_start(POOL_ARGS, &walk, ray, first.t);
+  walk_start(POOL_ARGS, &walk, ray, blend->t_first);
   float t_from = -INFINITY;
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
@@ -179,11 +147,9 @@ inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface) {
       const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
       const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t >= t_from && t < walk.t_exit && t >= first.t && t < blend.t_end && i != first.splat)
-        blend_add(&blend, t, q, normal.xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+      if (t >= t_from && t < walk.t_exit && t >= blend->t_first && t < blend->t_end && i != blend->splat)
+        blend_add(blend, t, q, normal.xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
     })
     t_from = walk.t_exit;
-  } while (walk.t_exit < blend.t_end && walk_next(POOL_ARGS, &walk));
-  blend_end(&blend, ray, surface);
-  return true;
+  } while (walk.t_exit < blend->t_end && walk_next(POOL_ARGS, &walk));
 }

@@ -41,4 +41,29 @@ typedef struct OctreePoint {
   float area;        /* texel 2, bytes 44-47: effective area A_i, root cube squared */
 } OctreePoint;
 
+/* The wide form of the same octree (N = 2): a node keeps the boxes of what its children really hold, radii included, so
+ * a splat lies in one leaf only and no cell is listed. Boxes are widened by a little more than a hit's rounding. */
+#define WIDE_CHILDREN 8
+typedef struct WideNode {
+  float low[3][WIDE_CHILDREN];  /* bytes 0-95: x of all children, then y, then z; an empty child's box is inverted */
+  float high[3][WIDE_CHILDREN]; /* bytes 96-191 */
+  pg_uint child[WIDE_CHILDREN]; /* bytes 192-223: node index, or WIDE_LEAF | blocks << 24 | first block; empty: 0 */
+} WideNode;
+#define WIDE_LEAF 0x80000000u       /* bit 31 */
+#define WIDE_MAX_BLOCKS 127u        /* bits 30-24: blocks of a leaf */
+#define WIDE_BLOCK_MASK 0x00ffffffu /* bits 23-0: its first block */
+
+/* A leaf's splats in blocks of WIDE_LANES (8 or 16), structure of arrays, 32-bit words:
+ *   0..3L-1 centre x, y, z;  3L..4L-1 radius (-1 in unused lanes);  4L..7L-1 normal x, y, z;  7L index of the block's
+ *   first point in the point pool, the others follow it;  7L+1..8L-1 zero */
+#define WIDE_BLOCK_WORDS(lanes) (8 * (lanes))
+#define WIDE_CENTRE(lanes, axis) ((axis) * (lanes))
+#define WIDE_RADIUS(lanes) (3 * (lanes))
+#define WIDE_NORMAL(lanes, axis) ((4 + (axis)) * (lanes))
+#define WIDE_FIRST(lanes) (7 * (lanes))
+
+/* Deepest wide tree that a traversal's stack holds: seven waiting siblings a level. */
+#define WIDE_MAX_DEPTH 27
+#define WIDE_STACK (7 * WIDE_MAX_DEPTH + 1)
+
 #endif

@@ -116,6 +116,10 @@ private:
     if (listed > options_.leaf_capacity && node.level < options_.max_depth) {
       const std::vector<std::uint32_t> borders = child_borders(node);
       Lists lists(children_);
+      if (options_.listing == Listing::centres) {
+        add_children(index, node, cell, borders, lists);
+        return;
+      }
       for (unsigned c = 0; c < children_; ++c)
         for (std::uint32_t p = borders[c]; p < borders[c + 1]; ++p)
           list_in_children(p, c, cell, lists);

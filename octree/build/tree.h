@@ -8,10 +8,17 @@
 
 namespace pointgi {
 
+/// What a cell's leaf_capacity counts.
+enum class Listing {
+  overlaps, ///< own points and extra splats: the `step` form
+  centres   ///< own points alone, no extra splats: the `wide` form, whose nodes know what their children really hold
+};
+
 struct TreeOptions {
   unsigned axis_bits = 1;      ///< log2 N: 1 (N = 2) or 2 (N = 4)
   unsigned leaf_capacity = 32; ///< a cell that lists no more splats than this, own and extra, is a leaf
   unsigned max_depth = 21;     ///< levels below the root; at most key_levels(axis_bits)
+  Listing listing = Listing::overlaps;
 };
 
 /// A node of the tree. Children are stored together, in the order x + N*y + N*N*z.

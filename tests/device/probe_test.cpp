@@ -65,7 +65,7 @@ TEST_CASE("the device descends as the host does, in every storage and branching"
   const auto in = device.upload(positions);
   const auto out = device.allocate<OctreeNode>(positions.size());
   cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(variant), "probe_descent");
-  device.launch(kernel, LaunchShape::line(positions.size()), on_device.nodes, on_device.begin_end, on_device.points, in,
+  device.launch(kernel, LaunchShape::line(positions.size()), on_device.nodes, on_device.leaves, on_device.points, in,
                 out, static_cast<cl_uint>(positions.size()));
   const auto found = device.download(out, positions.size());
   std::size_t different = 0;

@@ -14,17 +14,22 @@ namespace {
 /// Nearest hits through the octree; `splat` is the index into `splats`.
 std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
                                   const TraversalVariant& variant) {
-  const StepPools pools = pack_step(splats, build_tree(splats, {variant.axis_bits, 8, 21 / variant.axis_bits}));
+  TreeOptions options{variant.axis_bits, 8, 21 / variant.axis_bits};
+  options.listing = variant.form == TraversalForm::wide ? Listing::centres : Listing::overlaps;
+  const Tree tree = build_tree(splats, options);
+  const OctreePools pools = variant.form == TraversalForm::wide ? OctreePools(pack_wide(splats, tree, variant.lanes))
+                                                                : OctreePools(pack_step(splats, tree));
+  std::visit([](const auto& p) { verify(p); }, pools);
   Session& device = session();
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
   cl::Kernel kernel = device.kernel("traverse/trace.cl", build_options(variant), "trace_closest_rays");
-  device.launch(kernel, LaunchShape::line(rays.size()), on_device.nodes, on_device.begin_end, on_device.points, queries,
+  device.launch(kernel, LaunchShape::line(rays.size()), on_device.nodes, on_device.leaves, on_device.points, queries,
                 answers, static_cast<cl_uint>(rays.size()), 0.0f);
   std::vector<RayAnswer> result = device.download(answers, rays.size());
   for (RayAnswer& answer : result)
-    answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : pools.source[answer.splat];
+    answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : source_of(pools)[answer.splat];
   return result;
 }
 
@@ -72,6 +77,13 @@ TEST_CASE("a million hard rays find the splat that a linear scan finds, in every
       variant.axis_bits = axis_bits;
       CHECK(differences(trace_tree(splats, rays, variant), truth) == 0);
     }
+  for (const unsigned lanes : {8u, 16u}) {
+    CAPTURE(lanes);
+    TraversalVariant variant;
+    variant.form = TraversalForm::wide;
+    variant.lanes = lanes;
+    CHECK(differences(trace_tree(splats, rays, variant), truth) == 0);
+  }
 }
 
 TEST_CASE("the device's linear scan agrees with the host's in double precision") {
@@ -92,6 +104,8 @@ TEST_CASE("the device's linear scan agrees with the host's in double precision")
 }
 
 TEST_CASE("rays end: one splat, coincident splats, discs larger than the cells") {
+  TraversalVariant variant;
+  variant.form = GENERATE(TraversalForm::step, TraversalForm::wide);
   std::vector<Splat> splats;
   SECTION("one") {
     splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.2f)};
@@ -105,5 +119,5 @@ TEST_CASE("rays end: one splat, coincident splats, discs larger than the cells")
       s.radius = 0.13f;
   }
   const auto rays = hard_rays(splats, 50'000, 21);
-  CHECK(differences(trace_tree(splats, rays, {}), trace_all(splats, rays)) == 0);
+  CHECK(differences(trace_tree(splats, rays, variant), trace_all(splats, rays)) == 0);
 }

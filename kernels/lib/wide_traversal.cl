@@ -1,0 +1,235 @@
+/* The wide form of the octree: one ray against eight child boxes and WIDE_LANES splats at a time, near children first.
+ * Written in vectors of the language, because CPU compilers do not vectorise diverging work-items; for devices whose
+ * work-items have vector registers of their own.
+ *   WIDE_LANES  splats a block, 8 or 16
+ * What every form gives: trace_closest, trace_any, blend_others (kernels/lib/traversal.cl). */
+#ifndef WIDE_LANES
+#define WIDE_LANES 8
+#endif
+#include "lib/blend.cl"
+#include "lib/pools.cl"
+
+#if WIDE_LANES == 16
+typedef float16 lanes_f;
+typedef int16 lanes_i;
+typedef uint16 lanes_u;
+#define load_lanes(p) vload16(0, p)
+#define store_lanes(v, p) vstore16(v, 0, p)
+#define as_lanes_i as_int16
+#define LANE_NUMBERS ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define HALVES(op, v) op((v).lo, (v).hi)
+#else
+typedef float8 lanes_f;
+typedef int8 lanes_i;
+typedef uint8 lanes_u;
+#define load_lanes(p) vload8(0, p)
+#define store_lanes(v, p) vstore8(v, 0, p)
+#define as_lanes_i as_int8
+#define LANE_NUMBERS ((uint8)(0, 1, 2, 3, 4, 5, 6, 7))
+#define HALVES(op, v) (v)
+#endif
+
+inline float smallest_lane(lanes_f v) {
+  const float8 a = HALVES(fmin, v);
+  const float4 b = fmin(a.lo, a.hi);
+  return fmin(fmin(b.x, b.y), fmin(b.z, b.w));
+}
+
+inline uint smallest_lane_u(lanes_u v) {
+  const uint8 a = HALVES(min, v);
+  const uint4 b = min(a.lo, a.hi);
+  return min(min(b.x, b.y), min(b.z, b.w));
+}
+
+/* A ray as the box tests take it. */
+typedef struct WideRay {
+  float3 origin, direction, inverse, shift; /* t of the plane x is fma(x, inverse.x, shift.x) */
+  uint octant;                              /* bit a: the ray runs downwards on axis a */
+} WideRay;
+
+inline WideRay wide_ray(Ray ray) {
+  WideRay w;
+  w.origin = ray.origin;
+  w.direction = ray.direction;
+  /* Never zero: 1e-18 moves a ray by nothing, and its inverse squared stays finite. */
+  const float3 d = select(ray.direction, copysign((float3)(1e-18f), ray.direction), fabs(ray.direction) < 1e-18f);
+  w.inverse = 1.0f / d;
+  w.shift = -ray.origin * w.inverse;
+  w.octant = (d.x < 0.0f ? 1u : 0u) | (d.y < 0.0f ? 2u : 0u) | (d.z < 0.0f ? 4u : 0u);
+  return w;
+}
+
+/* Children whose boxes the ray meets in [t_from, t_to]: a byte a child, in the ray's order, nearest octant in the
+ * highest byte; *t_enter by child number. */
+inline ulong children_met(const __global WideNode* node, WideRay ray, float t_from, float t_to, float8* t_enter) {
+  const bool dx = (ray.octant & 1u) != 0u, dy = (ray.octant & 2u) != 0u, dz = (ray.octant & 4u) != 0u;
+  const float8 near_x = fma(vload8(0, dx ? node->high[0] : node->low[0]), (float8)(ray.inverse.x), (float8)(ray.shift.x));
+  const float8 far_x = fma(vload8(0, dx ? node->low[0] : node->high[0]), (float8)(ray.inverse.x), (float8)(ray.shift.x));
+  const float8 near_y = fma(vload8(0, dy ? node->high[1] : node->low[1]), (float8)(ray.inverse.y), (float8)(ray.shift.y));
+  const float8 far_y = fma(vload8(0, dy ? node->low[1] : node->high[1]), (float8)(ray.inverse.y), (float8)(ray.shift.y));
+  const float8 near_z = fma(vload8(0, dz ? node->high[2] : node->low[2]), (float8)(ray.inverse.z), (float8)(ray.shift.z));
+  const float8 far_z = fma(vload8(0, dz ? node->low[2] : node->high[2]), (float8)(ray.inverse.z), (float8)(ray.shift.z));
+  const float8 t0 = max(max(near_x, near_y), max(near_z, (float8)(t_from)));
+  const float8 t1 = min(min(far_x, far_y), min(far_z, (float8)(t_to)));
+  *t_enter = t0;
+  ulong met = as_ulong(convert_char8(t0 <= t1)) & 0x0101010101010101ul;
+  /* Child c goes to byte 7 - (c ^ octant): reversing all bytes is an exchange on each of the three axes. */
+  if (!dx)
+    met = ((met & 0x00ff00ff00ff00fful) << 8) | ((met >> 8) & 0x00ff00ff00ff00fful);
+  if (!dy)
+    met = ((met & 0x0000ffff0000fffful) << 16) | ((met >> 16) & 0x0000ffff0000fffful);
+  if (!dz)
+    met = (met << 32) | (met >> 32);
+  return met;
+}
+
+/* Nodes and leaves that wait, with the t at which the ray enters them. */
+typedef struct WideWalk {
+  uint waiting[WIDE_STACK];
+  float t_enter[WIDE_STACK];
+  int count;
+} WideWalk;
+
+/* Goes down from `reference` to the next leaf whose box is met in [t_from, t_to]; 0 when none is left. Pass 0 to go on
+ * with what waits. t_to may shrink from call to call. */
+inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWalk* walk, float t_from, float t_to) {
+  while (walk->count > 0) {
+    walk->count -= 1;
+    if (walk->t_enter[walk->count] > t_to)
+      continue;
+    const uint current = walk->waiting[walk->count];
+    if (current & WIDE_LEAF)
+      return current;
+    const __global WideNode* node = nodes + current;
+    float8 t_enter;
+    ulong met = children_met(node, ray, t_from, t_to, &t_enter);
+    float t_of[8];
+    vstore8(t_enter, 0, t_of);
+    while (met != 0ul) { /* farthest first, so that the nearest is taken next */
+      const uint low = (uint)(popcount((met & (0ul - met)) - 1ul)) >> 3;
+      met &= met - 1ul;
+      const uint child = (7u - low) ^ ray.octant;
+      walk->waiting[walk->count] = node->child[child];
+      walk->t_enter[walk->count] = t_of[child];
+      walk->count += 1;
+    }
+  }
+  return 0u;
+}
+
+inline void walk_from_root(WideWalk* walk) {
+  walk->waiting[0] = 0u;
+  walk->t_enter[0] = -INFINITY;
+  walk->count = 1;
+}
+
+/* One block of splats against the ray: ray_disc in lanes, to the same bits. */
+typedef struct BlockHits {
+  lanes_f t, q, radius, nx, ny, nz;
+  lanes_i inside; /* the ray's plane hit lies on the disc */
+  uint first;     /* index of lane 0 in the point pool */
+} BlockHits;
+
+inline BlockHits hit_block(const __global float* block, float3 origin, float3 direction) {
+  BlockHits h;
+  const lanes_f cx = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - origin.x;
+  const lanes_f cy = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - origin.y;
+  const lanes_f cz = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 2)) - origin.z;
+  h.radius = load_lanes(block + WIDE_RADIUS(WIDE_LANES));
+  h.nx = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 0));
+  h.ny = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 1));
+  h.nz = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 2));
+  h.t = fma(h.nx, cx, fma(h.ny, cy, h.nz * cz)) /
+        fma(h.nx, (lanes_f)(direction.x), fma(h.ny, (lanes_f)(direction.y), h.nz * direction.z));
+  const lanes_f ox = fma(h.t, (lanes_f)(direction.x), -cx), oy = fma(h.t, (lanes_f)(direction.y), -cy),
+                oz = fma(h.t, (lanes_f)(direction.z), -cz);
+  const lanes_f distance2 = fma(ox, ox, fma(oy, oy, oz * oz)), r2 = h.radius * h.radius;
+  h.q = distance2 / r2;
+  h.inside = (distance2 <= r2) & (h.radius > 0.0f);
+  h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
+  return h;
+}
+
+#define FOR_BLOCKS_OF_LEAF(leaf, block, body)                                              \
+  {                                                                                        \
+    const uint block_count_ = ((leaf) & ~WIDE_LEAF) >> 24;                                 \
+    const __global float* block = block_pool + (size_t)((leaf) & WIDE_BLOCK_MASK) * WIDE_BLOCK_WORDS(WIDE_LANES); \
+    for (uint b_ = 0u; b_ < block_count_; ++b_, block += WIDE_BLOCK_WORDS(WIDE_LANES))     \
+      body                                                                                 \
+  }
+
+/* Nearest hit in (ray.t_min, ray.t_max); of splats hit at the same t the one with the lowest index. */
+inline Hit trace_closest(POOL_PARAMS, Ray ray) {
+  Hit best = {ray.t_max, NO_SPLAT};
+  const WideRay wide = wide_ray(ray);
+  WideWalk walk;
+  walk_from_root(&walk);
+  for (uint leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t); leaf != 0u;
+       leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) {
+    FOR_BLOCKS_OF_LEAF(leaf, block, {
+      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const lanes_u index = h.first + LANE_NUMBERS;
+      const lanes_i nearer = h.inside & (h.t > ray.t_min) &
+                             ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
+      if (any(nearer)) {
+        const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
+        best.t = smallest_lane(t);
+        best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
+      }
+    })
+  }
+  return best;
+}
+
+/* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
+inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+  const WideRay wide = wide_ray(ray);
+  WideWalk walk;
+  walk_from_root(&walk);
+  for (uint leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max); leaf != 0u;
+       leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) {
+    FOR_BLOCKS_OF_LEAF(leaf, block, {
+      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
+      if (any(hit)) { /* belongs_to_ends in lanes */
+        const lanes_f facing_origin = fma(h.nx, (lanes_f)(ends.origin_normal.x),
+                                          fma(h.ny, (lanes_f)(ends.origin_normal.y), h.nz * ends.origin_normal.z));
+        const lanes_f facing_target = fma(h.nx, (lanes_f)(ends.target_normal.x),
+                                          fma(h.ny, (lanes_f)(ends.target_normal.y), h.nz * ends.target_normal.z));
+        const lanes_i at_origin = (h.t < SELF_HIT_REACH * (ends.origin_radius + h.radius)) & (facing_origin > SELF_HIT_COSINE);
+        const lanes_i at_target = (ray.t_max - h.t < SELF_HIT_REACH * (ends.target_radius + h.radius)) &
+                                  (facing_target > SELF_HIT_COSINE);
+        if (any(hit & ~at_origin & ~at_target))
+          return true;
+      }
+    })
+  }
+  return false;
+}
+
+/* Adds all discs but the first that are hit in the blend's window. */
+inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
+  const WideRay wide = wide_ray(ray);
+  WideWalk walk;
+  walk_from_root(&walk);
+  for (uint leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end); leaf != 0u;
+       leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) {
+    FOR_BLOCKS_OF_LEAF(leaf, block, {
+      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const lanes_i counts = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
+                             as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
+      if (any(counts)) {
+        float t_of[WIDE_LANES];
+        float q_of[WIDE_LANES];
+        store_lanes(select((lanes_f)(-INFINITY), h.t, counts), t_of);
+        store_lanes(h.q, q_of);
+        for (uint lane = 0u; lane < WIDE_LANES; ++lane)
+          if (t_of[lane] > -INFINITY) {
+            const uint i = h.first + lane;
+            blend_add(blend, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u).xyz,
+                      pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+          }
+      }
+    })
+  }
+}

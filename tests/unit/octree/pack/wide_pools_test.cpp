@@ -1,0 +1,64 @@
+#include "octree/pack/wide_pools.h"
+#include "tests/support/clouds.h"
+#include <catch2/catch.hpp>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+WidePools pack(const std::vector<Splat>& splats, unsigned leaf_capacity, unsigned lanes) {
+  TreeOptions options;
+  options.leaf_capacity = leaf_capacity;
+  options.listing = Listing::centres;
+  return pack_wide(splats, build_tree(splats, options), lanes);
+}
+
+} // namespace
+
+TEST_CASE("the wide form obeys its invariants") {
+  const unsigned lanes = GENERATE(8u, 16u), capacity = GENERATE(1u, 8u, 64u);
+  CHECK_NOTHROW(verify(pack(mixed_splats(), capacity, lanes)));
+  CHECK_NOTHROW(verify(pack({}, capacity, lanes)));
+  CHECK_NOTHROW(verify(pack({make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f)}, capacity, lanes)));
+  // More in one place than a leaf's reference can count: cut into nodes, within the traversal's stack.
+  CHECK_NOTHROW(
+      verify(pack(std::vector<Splat>(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 0, 1e-9f)), capacity, lanes)));
+}
+
+TEST_CASE("the wide form's verifier finds each planted fault") {
+  WidePools pools = pack(sphere_splats(600), 8, 8);
+  SECTION("a box that is too small") {
+    pools.nodes[0].high[0][0] -= 0.1f;
+  }
+  SECTION("a child before its parent") {
+    pools.nodes[1].child[0] = 1;
+  }
+  SECTION("a child outside the pool") {
+    pools.nodes[0].child[0] = 1u << 20;
+  }
+  SECTION("a lost leaf") {
+    pools.nodes.back().child[0] = 0;
+  }
+  SECTION("a point that moved") {
+    pools.points[300].position[1] += 0.01f;
+  }
+  SECTION("a point that grew") {
+    pools.points[300].radius *= 2.0f;
+  }
+  CHECK_THROWS_AS(verify(pools), std::logic_error);
+}
+
+TEST_CASE("the wide form takes at most 90 bytes a splat at its default capacity") {
+  const auto splats = sphere_splats(100'000);
+  // 48 of the point itself, 32 a lane of which four in five are used, and a node for every 80 splats.
+  CHECK(static_cast<double>(pack(splats, 64, 8).bytes()) / static_cast<double>(splats.size()) <= 90.0);
+}
+
+TEST_CASE("trees that the wide form cannot take are refused") {
+  const auto splats = sphere_splats(50);
+  CHECK_THROWS_AS(pack_wide(splats, build_tree(splats, {}), 8), std::invalid_argument);
+  TreeOptions options;
+  options.listing = Listing::centres;
+  CHECK_THROWS_AS(pack_wide(splats, build_tree(splats, options), 5), std::invalid_argument);
+}
