@@ -171,12 +171,12 @@ std::string choose_camera(Scene& scene, const WorldSplats& splats) {
   if (normals.find("sensor at the origin") != std::string::npos) {
     look_from_sensor(scene, splats.cloud, s);
     said = "seen from the sensor at the origin";
-  } else if (const Vector3d up = terrain_up(s); !up.isZero()) {
+  } else if (const Vector3d up = terrain_up(s); !up.isZero() && (!scene.up_chosen || up.dot(up_of(scene)) > 0.5)) {
     const Vector3d level = std::fabs(up.z()) > 0.5 ? Vector3d(0, -1, 0) : Vector3d(0, 0, 1);
     fit(scene, splats.cloud, s, std::sin(50.0 * degree) * up + std::cos(50.0 * degree) * level, up);
     said = "terrain, seen from above";
   } else {
-    const Vector3d up_axis = standing_up(splats.cloud, s);
+    const Vector3d up_axis = scene.up_chosen ? up_of(scene) : standing_up(splats.cloud, s);
     // An open scan faces the way it was scanned from.
     const Vector3d open = s.mean_normal - s.mean_normal.dot(up_axis) * up_axis;
     const bool is_open = open.norm() > 0.15;

@@ -60,6 +60,21 @@ void require_command(const CLI::App& app, const std::string& word) {
                                    (near.empty() ? "the commands are: " + list : "did you mean \"" + near + "\"?"));
 }
 
+/// Words that no option took, the nearest option beside the first.
+std::string unknown_words(CLI::App& app) {
+  const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command->get_options())
+    if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
+  std::string word;
+  for (const std::string& left : app.remaining(true))
+    if (word.empty() || (left[0] == '-' && word[0] != '-')) word = left;
+  const std::string near = nearest(word, known);
+  return "unknown option \"" + word + "\" of " + command->get_name() +
+         (near.empty() ? "; `pointgi " + command->get_name() + " --help` lists them"
+                       : "; did you mean \"" + near + "\"?");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Global illumination of point clouds, without meshing them."};
   app.set_version_flag("--version", "pointgi " POINTGI_VERSION);
@@ -67,28 +82,38 @@ int run(int argc, char** argv) {
   app.fallthrough();
   Common common;
   RenderOptions render;
-  app.add_flag("-v", common.verbosity, "say more (repeat for more)");
+  app.add_flag("-v", common.verbosity, "say more");
   app.add_flag("--quiet", render.quiet, "only warnings and results");
 
   CLI::App* render_command = app.add_subcommand("render", "render a scene, or a bare cloud");
   render_command->add_option("SCENE.toml|CLOUD.ply", render.input, "what to render")->required();
-  render_command->add_option("-o,--output", render.output, "the picture, OUT.exr; OUT.png is written beside it");
-  render_command->add_option("--size", render.size, "image size, WIDTHxHEIGHT");
-  render_command->add_option("--spp", render.spp, "samples a pixel");
-  render_command->add_option("--quality", render.quality, "draft (a quarter of the samples), normal, high (four times)")
+  render_command->add_option(
+      "-o,--output", render.output,
+      "the picture, OUT.exr, and OUT.png beside it; default: the input's name, here; replaces older ones");
+  render_command->add_option("--size", render.size, "image size, WIDTHxHEIGHT (default 640x480)");
+  render_command->add_option("--spp", render.spp, "samples a pixel (default 32)")->check(CLI::Range(1, 65536));
+  render_command
+      ->add_option("--quality", render.quality,
+                   "samples a pixel: draft (a quarter of the scene's), normal, high (four times)")
       ->check(CLI::IsMember({"draft", "normal", "high"}));
-  render_command->add_option("--exposure", render.exposure, "stops, for the PNG");
-  render_command->add_option("--integrator", render.integrator, "pointgi");
-  render_command->add_option("--device", render.device, "index, part of a name, cpu or gpu (see: pointgi devices)");
+  render_command->add_option("--exposure", render.exposure, "brightens the PNG by this many stops (default 0)");
+  render_command->add_option("--integrator", render.integrator,
+                             "how light is computed (default pointgi, the only one so far)");
+  render_command->add_option(
+      "--device", render.device,
+      "index, part of a name, cpu or gpu; default: a GPU if there is one (see: pointgi devices)");
   render_command->add_option("--threads", common.threads, "threads of the host and of a CPU device")
       ->check(CLI::Range(1, 1024));
-  render_command->add_option("--seed", render.seed, "seed of the samples");
-  render_command->add_option("--set", render.overrides, "a value of the scene file: key.path=value")
+  render_command->add_option("--seed", render.seed, "seed of the samples (default 1)");
+  render_command
+      ->add_option("--set", render.overrides,
+                   "a value of the scene file, e.g. camera.fov_deg=30 or cloud.0.normals=flip; may repeat")
       ->take_all()
       ->expected(1);
   render_command->add_option("--stats", render.stats_file, "write figures of the run to this JSON file");
   render_command->add_option("--trace", render.trace_file, "write the stages as a Chrome trace to this JSON file");
-  render_command->add_option("--pixelbounds", render.pixel_bounds, "render only x0,x1,y0,y1 (ends exclusive)");
+  render_command->add_option("--pixelbounds", render.pixel_bounds,
+                             "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
   render_command->add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
 
   std::string info_file;
@@ -105,8 +130,13 @@ int run(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-') require_command(app, argv[1]);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& help) { // --help, --version
+    app.exit(help);
+    return code_of(ExitCode::done);
+  } catch (const CLI::ExtrasError& error) {
+    throw Error(ExitCode::usage, unknown_words(app));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? code_of(ExitCode::done) : code_of(ExitCode::usage);
+    throw Error(ExitCode::usage, std::string(error.what()) + "; `pointgi --help` lists what there is");
   }
   set_up_log(common.verbosity, render.quiet);
   limit_threads(common.threads);

@@ -35,6 +35,8 @@ std::vector<std::string> overrides_of(const RenderOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.size.empty()) {
     const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
+    if (size[0] < 1 || size[1] < 1)
+      throw Error(ExitCode::usage, "--size: expected a width and height of at least 1, found \"" + options.size + "\"");
     overrides.push_back("render.size=[" + std::to_string(size[0]) + ", " + std::to_string(size[1]) + "]");
   }
   if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
@@ -126,6 +128,29 @@ void stop_if_asked() {
   if (interrupted()) throw Error(ExitCode::interrupted, "interrupted before the first pixel; nothing was written");
 }
 
+/// What a black or empty picture most often comes from.
+void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& scene) {
+  const double hits = static_cast<double>(totals.eye_rays_on_splats);
+  if (hits == 0.0 && !totals.interrupted && totals.eye_rays > 0) {
+    const Vector3d high = frame.origin + Vector3d::Constant(frame.side), &eye = scene.camera.position;
+    spdlog::warn("no eye ray met a splat: the splats lie within [{:.4g}, {:.4g}, {:.4g}] and [{:.4g}, {:.4g}, {:.4g}], "
+                 "the camera is at [{:.4g}, {:.4g}, {:.4g}]; are the units the same, and does it look that way?",
+                 frame.origin.x(), frame.origin.y(), frame.origin.z(), high.x(), high.y(), high.z(), eye.x(), eye.y(),
+                 eye.z());
+  }
+  const double backs = hits > 0.0 ? static_cast<double>(totals.eye_rays_on_back_faces) / hits : 0.0;
+  if (backs > 0.5)
+    spdlog::warn(
+        "{:.0f} % of the eye rays that hit a splat met its back, which is black: the normals point the other way "
+        "(normals = \"flip\" on the [[cloud]] turns them), or the camera stands inside",
+        100.0 * backs);
+  else if (backs > 0.1)
+    spdlog::warn(
+        "{:.0f} % of the eye rays that hit a splat met its back, which is black: parts of the surface face away "
+        "from the camera; where they should not, normals = \"estimate\" may find better ones",
+        100.0 * backs);
+}
+
 } // namespace
 
 ExitCode run_render(const RenderOptions& options) {
@@ -144,6 +169,7 @@ ExitCode run_render(const RenderOptions& options) {
     scene.render.spp = close_to_1(options.quality == "draft" ? 0.25 : 4.0, scene.render.spp);
   refuse_unsupported(scene);
   const PixelWindow window = window_of(options, scene.render);
+  require_writable_picture(output_of(options)); // before the work, not after it
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
 
   Session session(choose_device(options.device));
@@ -184,19 +210,14 @@ ExitCode run_render(const RenderOptions& options) {
         [&](double share) { progress.update(share); }, interrupted);
   }
   stages.finish(stats.render.rays, "rays", stats.render.device_seconds);
+  for (const auto& [name, time] : session.kernel_times())
+    spdlog::debug("kernel {}: {} launches, {:.3f} s", name, time.launches, time.seconds);
   const double render_seconds = stages.records().back().seconds;
   stages.start("image");
   writer.finish(render_seconds);
   stages.finish(static_cast<std::uint64_t>(window.x1 - window.x0) * (window.y1 - window.y0), "pixels");
 
-  const double back_share = stats.render.eye_rays_on_splats > 0
-                                ? static_cast<double>(stats.render.eye_rays_on_back_faces) /
-                                      static_cast<double>(stats.render.eye_rays_on_splats)
-                                : 0.0;
-  if (back_share > 0.05)
-    spdlog::warn("{:.0f} % of the eye rays that hit a splat met its back, which is black; if the normals are inverted, "
-                 "normals = \"flip\" on the [[cloud]] mends them",
-                 100.0 * back_share);
+  warn_of_view(stats.render, frame, scene);
   if (!options.stats_file.empty()) {
     stats.command = "render";
     stats.scene = &scene;

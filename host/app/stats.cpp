@@ -24,8 +24,9 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   out["version"] = POINTGI_VERSION;
   out["command"] = stats.command;
   out["device"] = {{"name", info.name}, {"vendor", info.vendor}, {"driver", info.driver}, {"opencl", info.opencl}};
-  out["scene"] = {
-      {"points", stats.octree.points}, {"materials", stats.scene->materials.size()}, {"lights", stats.scene->lights.size()}};
+  out["scene"] = {{"points", stats.octree.points},
+                  {"materials", stats.scene->materials.size()},
+                  {"lights", stats.scene->lights.size()}};
   const OctreeSummary& octree = stats.octree;
   out["octree"] = {{"form", octree.form},
                    {"nodes", octree.nodes},

@@ -15,6 +15,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr unsigned spacing_neighbours = 6;
 constexpr double isolated_factor = 8.0; // spacing over that of the neighbours; a 16-fold density step gives 4 to 6
+constexpr double stray_factor = 3.0;    // of the cloud's median spacing: open and sparser than this is a stray clump
 constexpr unsigned isolated_neighbours = 12;
 constexpr double opposite_cosine = -0.3;
 
@@ -45,11 +46,14 @@ float neighbours_spacing(const Sites& sites, std::uint32_t site, const std::vect
   return values[(count - 1) / 2];
 }
 
+float median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 void rein_in_isolated(const Sites& sites, std::vector<float>& spacing) {
-  std::vector<float> sorted = spacing;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const float suspicious = *middle * static_cast<float>(isolated_factor);
+  const float suspicious = median(spacing) * static_cast<float>(isolated_factor);
   const std::vector<float> own = spacing;
   parallel_ranges(sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -296,6 +300,7 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
   sizes.area.resize(normals.size());
   std::atomic<std::size_t> capped{0};
   const double unit = sites.unit();
+  const double usual = median(spacing.spacing);
   parallel_ranges(sites.size(), 512, [&](std::size_t begin, std::size_t end) {
     CellMaker maker(sites, normals, spacing.spacing, faces_agree);
     std::size_t capped_here = 0;
@@ -309,7 +314,10 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
       for (const std::uint32_t point : points) {
         if (before == nullptr || normals[point] != *before) cell = maker.cell(normals[point]);
         before = &normals[point];
-        sizes.radius[point] = positive_float(cell.reach * splat_overlap * (noisy ? maker.widening() : 1.0) * unit);
+        // A clump of stray points far from the rest is sparse and open: its discs stay in the size of the others'.
+        const bool stray = cell.capped && spacing.spacing[s] > stray_factor * usual;
+        const double reach = stray ? std::min(cell.reach, stray_factor * usual) : cell.reach;
+        sizes.radius[point] = positive_float(reach * splat_overlap * (noisy ? maker.widening() : 1.0) * unit);
         sizes.area[point] = positive_float(cell.area / sharing.with(point) * unit * unit);
         capped_here += cell.capped;
       }

@@ -1,4 +1,5 @@
 #include "host/image/picture_writer.h"
+#include "host/atomic_file.h"
 #include "host/error.h"
 #include "host/image/exr_writer.h"
 #include "host/image/png_writer.h"
@@ -49,6 +50,11 @@ std::size_t index_of(const std::vector<ChannelName>& channels, const std::string
 }
 
 } // namespace
+
+void require_writable_picture(const std::string& exr_path) {
+  for (const std::string& path : {png_path_of(exr_path), exr_path})
+    const AtomicFile probe(path); // made and taken away again
+}
 
 struct PictureWriter::Files {
   Files(const std::string& path, int full_width, int full_height, PixelWindow pixel_window,

@@ -53,6 +53,9 @@ private:
   std::unique_ptr<Files> files_;
 };
 
+/// Throws Error(output) as PictureWriter's constructor would for a name or a place that cannot be written.
+void require_writable_picture(const std::string& exr_path);
+
 /// A whole EXR file in memory, for tests and tools: channel name -> width*height values, rows from the top of `window`.
 struct Picture {
   int width = 0, height = 0;                               ///< of `window`, which is the file's dataWindow

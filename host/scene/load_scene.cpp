@@ -60,7 +60,10 @@ Scene scene_of_document(const toml::table& document, const std::string& path, co
 
   Scene scene;
   scene.file = path;
-  if (const auto up = root.choice("up", {"y", "z"})) scene.up = *up == "y" ? UpAxis::y : UpAxis::z;
+  if (const auto up = root.choice("up", {"y", "z"})) {
+    scene.up = *up == "y" ? UpAxis::y : UpAxis::z;
+    scene.up_chosen = true;
+  }
   load_render(root, scene.render);
   load_camera(root, scene.up, scene.camera);
   scene.materials = load_materials(root, scene.warnings);

@@ -160,6 +160,7 @@ struct TraversalSettings {
 struct Scene {
   std::string file;
   UpAxis up = UpAxis::y;
+  bool up_chosen = false; ///< the file says which way is up; else a chosen camera finds out
   RenderSettings render;
   CameraSettings camera;
   std::vector<MaterialSettings> materials;

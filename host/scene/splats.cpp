@@ -82,7 +82,21 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 
 } // namespace
 
+namespace {
+
+/// Scanners' own formats are for the programs that know them; the mesh library's answer would only puzzle.
+void refuse_scanner_format(const std::string& file) {
+  for (const char* extension : {".las", ".laz", ".e57", ".pcd", ".pts", ".ptx", ".xyz"})
+    if (has_extension(file, extension))
+      throw Error(ExitCode::input,
+                  file + ": " + (extension + 1) +
+                      " is not read directly; convert it to PLY first, with `pdal translate` or CloudCompare");
+}
+
+} // namespace
+
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
+  refuse_scanner_format(settings.file);
   PointCloud cloud = has_extension(settings.file, ".ply")
                          ? read_ply(settings.file, report)
                          : sample_mesh(settings.file, settings.spacing / settings.scale, report);

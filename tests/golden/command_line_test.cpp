@@ -56,6 +56,9 @@ TEST_CASE("wrong usage is exit code 2 and says what is right") {
       {"render", "required"},
       {"render " + scene + " --size 10", "--size: expected WIDTHxHEIGHT"},
       {"render " + scene + " --size 10x", "--size: expected WIDTHxHEIGHT"},
+      {"render " + scene + " --size 0x10", "at least 1"},
+      {"render " + scene + " --spp 0", "--spp"},
+      {"render " + scene + " --qualty draft", "did you mean \"--quality\""},
       {"render " + scene + " --pixelbounds 0,50,0,10", "0 <= x0 < x1 <= 40"},
       {"render " + scene + " --pixelbounds 5,5,0,10", "x0 < x1"},
       {"render " + scene + " --quality best", "draft"},
@@ -85,7 +88,7 @@ TEST_CASE("wrong input is exit code 3 and names the file") {
       {"render " + folder.write("empty.ply", ""), "empty.ply"},
       {"render " + folder.write("text.xyz", "1 2 3\n"), "text.xyz"},
       {"render " + glass, "type \"glass\" cannot be rendered by this version"},
-      {"render " + folder.write("a.toml", small_scene()) + " --spp 0", "render.spp"},
+      {"render " + folder.write("scan.las", "LASF"), "pdal translate"},
       {"render " + folder.write("b.toml", small_scene()) + " --set render.sp=3", "did you mean \"spp\""},
   };
   for (const Case& c : cases) {
