@@ -1,5 +1,4 @@
 #include "host/app/commands.h"
-#include "host/app/interrupt.h"
 #include "host/scene/nearest.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -141,7 +140,6 @@ int run(int argc, char** argv) {
   set_up_log(common.verbosity, render.quiet);
   limit_threads(common.threads);
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then a write error, reported as one
-  catch_interrupts();
   render.device = environment_or(render.device, "POINTGI_DEVICE");
   if (render_command->parsed()) return code_of(run_render(render));
   if (info_command->parsed()) return code_of(run_info(info_file));
@@ -157,7 +155,9 @@ int main(int argc, char** argv) {
     return static_cast<int>(code);
   };
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0) return fail(pointgi::ExitCode::output, "stdout cannot be written; is its disk full?");
+    return code;
   } catch (const pointgi::Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {

@@ -1,4 +1,5 @@
 #include "host/app/prepare.h"
+#include "host/cloud/input_file.h"
 #include "host/error.h"
 #include "octree/build/cell_key.h"
 #include <algorithm>
@@ -6,8 +7,7 @@
 namespace pointgi {
 
 bool is_scene_file(const std::string& file) {
-  const std::string end = ".toml";
-  return file.size() >= end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
+  return has_extension(file, ".toml");
 }
 
 OctreePools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings,

@@ -4,11 +4,14 @@
 #include "host/app/prepare.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
+#include "host/atomic_file.h"
 #include "host/cl/binary_cache.h"
+#include "host/scene/merge_coincident.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -72,10 +75,8 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
 }
 
 /// The stages that later steps of light transport will fill; said so, not left out (method.md §7).
-void skip_indirect_stages(const Scene& scene, StageLog& stages) {
-  const bool lit = !scene.lights.empty() || scene.environment.maxCoeff() > 0.0 ||
-                   std::any_of(scene.materials.begin(), scene.materials.end(),
-                               [](const MaterialSettings& m) { return m.emission.maxCoeff() > 0.0; });
+void skip_indirect_stages(const Scene& scene, const DeviceLighting& lighting, StageLog& stages) {
+  const bool lit = !lighting.delta.empty() || !lighting.emitters.empty() || lighting.has_environment;
   const std::string reason = lit ? "this version renders direct light only" : "the scene has no light and no emission";
   stages.skip("vmap", reason);
   stages.skip("fmm", reason);
@@ -124,10 +125,6 @@ void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
   if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
 }
 
-void stop_if_asked() {
-  if (interrupted()) throw Error(ExitCode::interrupted, "interrupted before the first pixel; nothing was written");
-}
-
 /// What a black or empty picture most often comes from.
 void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& scene) {
   const double hits = static_cast<double>(totals.eye_rays_on_splats);
@@ -151,25 +148,85 @@ void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& s
         100.0 * backs);
 }
 
-} // namespace
+/// The scene's splats as the device takes them.
+struct PlacedSplats {
+  Frame frame;
+  std::vector<Splat> splats;
+  std::vector<std::uint32_t> id; ///< of each splat: its place among the kept points of all clouds and shapes, in order
+};
 
-ExitCode run_render(const RenderOptions& options) {
+PlacedSplats load_and_place(Scene& scene, const RenderOptions& options) {
+  const WorldSplats world = load_splats(scene);
+  choose_view(scene, world, !is_scene_file(options.input));
+  log_reports(scene, world);
+  PlacedSplats placed;
+  placed.frame = frame_of(world.cloud);
+  placed.splats = place_in_cube(world, placed.frame);
+  placed.id.resize(placed.splats.size());
+  std::iota(placed.id.begin(), placed.id.end(), 0u);
+  if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)
+    spdlog::info("{} points that lie on others were merged with them", merged);
+  return placed;
+}
+
+/// Device memory as the variant wants it, plain buffers where the device's images are too small.
+DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
+  if (!images_fit(session.info(), pools, variant.storage)) {
+    spdlog::warn("the device's images are missing or too small for the octree: plain buffers are used instead");
+    variant.storage = PoolStorage::buffer;
+  }
+  return upload_pools(session, pools, variant.storage);
+}
+
+Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "pointgi")
     throw Error(ExitCode::usage,
                 "--integrator " + options.integrator + ": this version has the integrator \"pointgi\" only");
+  Scene scene = scene_of(options);
+  if (!options.spp && options.quality != "normal") {
+    const double factor = options.quality == "draft" ? 0.25 : 4.0;
+    scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
+  }
+  refuse_unsupported(scene);
+  // Before the work, not after it.
+  require_writable_picture(output_of(options));
+  for (const std::string& file : {options.stats_file, options.trace_file})
+    if (!file.empty()) const AtomicFile probe(file);
+  return scene;
+}
+
+/// Renders and writes the picture; false when it was interrupted before a row was finished, which leaves an older
+/// picture alone.
+bool render_picture(Session& session, const DevicePools& pools, const RenderRequest& request, PictureWriter& writer,
+                    bool quiet, RenderTotals& totals, StageLog& stages) {
+  catch_interrupts();
+  stages.start("render");
+  {
+    Progress progress("render", quiet);
+    totals = render(
+        session, pools, request, [&](const Band& band) { writer.write(band); },
+        [&](double share) { progress.update(share); }, interrupted);
+  }
+  stages.finish(totals.rays, "rays", totals.device_seconds);
+  for (const auto& [name, time] : session.kernel_times())
+    spdlog::debug("kernel {}: {} launches, {:.3f} s", name, time.launches, time.seconds);
+  if (totals.interrupted && totals.rows_done == 0) return false;
+  const double render_seconds = stages.records().back().seconds;
+  stages.start("image");
+  writer.finish(render_seconds);
+  const PixelWindow& w = request.window;
+  stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
+  return true;
+}
+
+} // namespace
+
+ExitCode run_render(const RenderOptions& options) {
   StageLog stages;
   Stats stats;
-  const auto close_to_1 = [](double factor, int spp) {
-    return std::max(1, static_cast<int>(std::lround(spp * factor)));
-  };
-
   stages.start("scene");
-  Scene scene = scene_of(options);
-  if (!options.spp && options.quality != "normal")
-    scene.render.spp = close_to_1(options.quality == "draft" ? 0.25 : 4.0, scene.render.spp);
-  refuse_unsupported(scene);
+  Scene scene = checked_scene(options);
   const PixelWindow window = window_of(options, scene.render);
-  require_writable_picture(output_of(options)); // before the work, not after it
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
 
   Session session(choose_device(options.device));
@@ -177,47 +234,29 @@ ExitCode run_render(const RenderOptions& options) {
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
 
   stages.start("cloud");
-  WorldSplats splats = load_splats(scene);
-  choose_view(scene, splats, !is_scene_file(options.input));
-  log_reports(scene, splats);
-  const Frame frame = frame_of(splats.cloud);
-  std::vector<Splat> placed = place_in_cube(splats, frame);
-  splats.cloud = {};
-  stages.finish(placed.size(), "points");
-  stop_if_asked();
+  PlacedSplats placed = load_and_place(scene, options);
+  stages.finish(placed.splats.size(), "points");
 
   stages.start("octree");
-  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
-  const OctreePools pools = build_pools(placed, scene.octree, variant);
-  placed = {};
+  TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
+  const OctreePools pools = build_pools(placed.splats, scene.octree, variant);
+  placed.splats = {};
   std::vector<std::uint32_t> ids(source_of(pools));
   for (std::uint32_t& id : ids)
-    id = splats.source[id];
+    id = placed.id[id];
+  const DevicePools on_device = upload(session, pools, variant);
   stats.octree = summary_of(pools);
   stages.finish(stats.octree.nodes, "nodes");
-  stop_if_asked();
-  skip_indirect_stages(scene, stages);
 
-  const DevicePools on_device = upload_pools(session, pools, variant.storage);
-  const DeviceLighting lighting = device_lighting(scene, frame, points_of(pools));
+  const DeviceLighting lighting = device_lighting(scene, placed.frame, points_of(pools));
+  skip_indirect_stages(scene, lighting, stages);
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window, film_channels(),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
-  stages.start("render");
-  {
-    Progress progress("render", options.quiet);
-    stats.render = render(
-        session, on_device, {window, lighting, frame, ids, variant}, [&](const Band& band) { writer.write(band); },
-        [&](double share) { progress.update(share); }, interrupted);
-  }
-  stages.finish(stats.render.rays, "rays", stats.render.device_seconds);
-  for (const auto& [name, time] : session.kernel_times())
-    spdlog::debug("kernel {}: {} launches, {:.3f} s", name, time.launches, time.seconds);
-  const double render_seconds = stages.records().back().seconds;
-  stages.start("image");
-  writer.finish(render_seconds);
-  stages.finish(static_cast<std::uint64_t>(window.x1 - window.x0) * (window.y1 - window.y0), "pixels");
-
-  warn_of_view(stats.render, frame, scene);
+  const bool written = render_picture(session, on_device, {window, lighting, placed.frame, ids, variant}, writer,
+                                      options.quiet, stats.render, stages);
+  if (!written)
+    throw Error(ExitCode::interrupted, "interrupted before the first rows were finished; nothing was written");
+  warn_of_view(stats.render, placed.frame, scene);
   if (!options.stats_file.empty()) {
     stats.command = "render";
     stats.scene = &scene;
@@ -232,7 +271,7 @@ ExitCode run_render(const RenderOptions& options) {
                  window.y1 - window.y0);
     return ExitCode::interrupted;
   }
-  spdlog::info("{} points, {:.1f} million rays, {} ({} on the device)", stats.octree.points,
+  spdlog::info("{} splats, {:.1f} million rays, {} ({} on the device)", stats.octree.points,
                1e-6 * static_cast<double>(stats.render.rays), duration_text(stages.seconds()),
                duration_text(stats.render.device_seconds));
   return ExitCode::done;

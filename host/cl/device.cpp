@@ -68,7 +68,11 @@ std::vector<Device> list_devices() {
       continue; // a platform without devices
     }
     for (const cl::Device& device : devices)
-      result.push_back({device, describe(device, platform)});
+      try {
+        result.push_back({device, describe(device, platform)});
+      } catch (const cl::Error&) {
+        continue; // a device that cannot say what it is cannot be used, and must not hide the others
+      }
   }
   return result;
 }

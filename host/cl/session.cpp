@@ -52,7 +52,7 @@ cl::Kernel Session::kernel(const std::string& file, const std::string& options, 
 
 void Session::account(const cl::Memory& memory, std::uint64_t bytes) {
   bytes_->now += bytes;
-  bytes_->peak = std::max(bytes_->peak, bytes_->now);
+  bytes_->peak = std::max(bytes_->peak, bytes_->now.load());
   // The counter outlives the session as long as memory does: whoever holds the last reference ends the count.
   struct Release {
     std::shared_ptr<Bytes> total;
@@ -149,36 +149,59 @@ cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool i
   }
 }
 
-double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments) {
+namespace {
+
+std::string name_of(const cl::Kernel& kernel) {
   std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
   name.erase(std::find(name.begin(), name.end(), '\0'), name.end());
+  return name;
+}
+
+/// What would only fail on the device, or on another device than the developer's.
+void check_launch(const cl::Kernel& kernel, const cl::Device& device, const DeviceInfo& info, const LaunchShape& shape,
+                  cl_uint arguments) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(ExitCode::internal, "launch of " + name + " refused: " + why);
+    throw Error(ExitCode::internal, "launch of " + name_of(kernel) + " refused: " + why);
   };
-  if (arguments != kernel.getInfo<CL_KERNEL_NUM_ARGS>())
-    refuse("it takes " + std::to_string(kernel.getInfo<CL_KERNEL_NUM_ARGS>()) + " arguments, not " +
-           std::to_string(arguments));
+  const cl_uint wanted = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+  if (arguments != wanted)
+    refuse("it takes " + std::to_string(wanted) + " arguments, not " + std::to_string(arguments));
   for (int d = 0; d < 2; ++d)
     if (shape.local[d] == 0 || shape.global[d] == 0 || shape.global[d] % shape.local[d] != 0)
       refuse("the work-group does not divide the range");
-  if (shape.local[0] * shape.local[1] > kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_))
-    throw Error(ExitCode::device, info_.name + ": " + name + " needs work-groups of " +
-                                      std::to_string(shape.local[0] * shape.local[1]) + ", the device gives " +
-                                      std::to_string(kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_)));
-  if (kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device_) > info_.local_memory_bytes)
-    throw Error(ExitCode::device, info_.name + ": too little local memory for " + name);
+  const std::size_t group = shape.local[0] * shape.local[1];
+  const std::size_t most = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device);
+  if (group > most)
+    throw Error(ExitCode::device, info.name + ": " + name_of(kernel) + " needs work-groups of " +
+                                      std::to_string(group) + ", the device gives " + std::to_string(most) +
+                                      "; choose another --device");
+  if (kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device) > info.local_memory_bytes)
+    throw Error(ExitCode::device,
+                info.name + ": too little local memory for " + name_of(kernel) + "; choose another --device");
+}
+
+} // namespace
+
+void Session::refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl::Error& error) const {
+  throw Error(ExitCode::device, info_.name + ": argument " + std::to_string(index) + " of " + name_of(kernel) +
+                                    " was refused: " + cl_error_name(error.err()));
+}
+
+double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments) {
   try {
+    check_launch(kernel, device_, info_, shape, arguments);
     cl::Event event;
     queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(shape.global[0], shape.global[1]),
                                 cl::NDRange(shape.local[0], shape.local[1]), nullptr, &event);
     event.wait();
     const double seconds = 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                                       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-    times_[name].launches += 1;
-    times_[name].seconds += seconds;
+    KernelTime& time = times_[name_of(kernel)];
+    time.launches += 1;
+    time.seconds += seconds;
     return seconds;
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "running " + name);
+    rethrow(error, info_, "running a kernel");
   }
 }
 

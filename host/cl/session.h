@@ -1,7 +1,7 @@
 #pragma once
 /// One device at work: context, queue, programs, buffers, launches. The only route to the OpenCL API.
 #include "host/cl/device.h"
-#include <cstring>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -79,7 +79,11 @@ public:
   template <typename... Args>
   double launch(cl::Kernel& kernel, const LaunchShape& shape, const Args&... args) {
     cl_uint index = 0;
-    (set_argument(kernel, index++, args), ...);
+    try {
+      (set_argument(kernel, index++, args), ...);
+    } catch (const cl::Error& error) {
+      refuse_argument(kernel, index - 1, error);
+    }
     return run(kernel, shape, index);
   }
 
@@ -93,7 +97,7 @@ public:
 
 private:
   struct Bytes {
-    std::uint64_t now = 0;
+    std::atomic<std::uint64_t> now{0}; ///< drivers give memory back on threads of their own
     std::uint64_t peak = 0;
   };
 
@@ -103,6 +107,7 @@ private:
   cl::Program build(const std::string& file, const std::string& options);
   void dump(const std::string& file, const std::string& options, const std::string& source) const;
   void account(const cl::Memory& memory, std::uint64_t bytes);
+  [[noreturn]] void refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl::Error& error) const;
   double run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments);
 
   template <typename T>

@@ -160,6 +160,12 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
                                      : "none of the cloud's " + std::to_string(dropped) +
                                            " points can be used: every one has a value that is not finite, a normal "
                                            "of length 0 or a radius not above 0; check the file's columns");
+  const std::size_t outliers = drop_outliers(cloud);
+  report.points_dropped += outliers;
+  if (outliers > 0)
+    report.warnings.push_back(std::to_string(outliers) + " of " + std::to_string(outliers + cloud.size()) +
+                              " points were dropped: they lie over a thousand times the size of the others away; clean "
+                              "the scan, or split it into clouds, if they are meant");
   if (dropped > 0)
     report.warnings.push_back(
         std::to_string(dropped) + " of " + std::to_string(dropped + cloud.size()) +
@@ -196,8 +202,7 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
   if (!own_radii) cloud.radius = std::move(sizes.radius);
   if (!sampled) cloud.area = std::move(sizes.area);
 
-  if (signs_given && !sampled && spacing.opposite < consistent_share &&
-      (options.normals == NormalSource::automatic || options.normals == NormalSource::flip))
+  if (signs_given && !sampled && spacing.opposite < consistent_share && options.normals == NormalSource::automatic)
     turn_inside_out_if_inward(cloud, sites, report);
   if (options.normals == NormalSource::flip) {
     turn_round(cloud);

@@ -9,7 +9,7 @@ enum class NormalSource {
   automatic, ///< file's if there, else faces', else estimated; flipped as a whole when a closed surface faces inward
   file,      ///< the file's, normalised, never flipped
   estimate,  ///< PCA, whatever the file has
-  flip,      ///< as `automatic` finds them, then turned round
+  flip,      ///< the file's, else faces', else estimated ones, turned round once
 };
 enum class RadiusSource { automatic, file, estimate };
 

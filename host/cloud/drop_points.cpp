@@ -1,5 +1,6 @@
 #include "host/cloud/drop_points.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,12 @@ namespace pointgi {
 namespace {
 
 constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
+
+// A root cube a thousand times the object's size still leaves it 2000 of the finest cells on a side; beyond that the
+// object itself would be lost in rounding.
+constexpr double outlier_distance = 1000.0; // sizes of the rest
+constexpr double outlier_share = 1e-3;
+constexpr std::size_t least_points = 1000; // fewer do not tell what the rest is
 
 bool positive(float value) {
   return std::isnormal(value) && value > 0;
@@ -21,24 +28,14 @@ void keep_renumbered(std::vector<T>& values, const std::vector<std::uint32_t>& n
   values.resize(kept);
 }
 
-} // namespace
-
-std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& options) {
-  const bool use_normal = !cloud.normal.empty() && options.normals != NormalSource::estimate;
-  const bool use_radius = !cloud.radius.empty() && options.radii != RadiusSource::estimate;
-  const auto usable = [&](std::size_t i) {
-    if (!cloud.position[i].allFinite()) return false;
-    if (!cloud.colour.empty() && !cloud.colour[i].allFinite()) return false;
-    if (!cloud.area.empty() && !positive(cloud.area[i])) return false;
-    if (use_radius && !positive(cloud.radius[i])) return false;
-    return !use_normal || (cloud.normal[i].allFinite() && std::isnormal(cloud.normal[i].stableNorm()));
-  };
-
+/// Removes the points that `keep(index)` does not want, and returns how many went.
+template <class Keep>
+std::size_t keep_points(PointCloud& cloud, Keep keep) {
   const std::size_t n = cloud.size();
   std::vector<std::uint32_t> number(n);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < n; ++i)
-    number[i] = usable(i) ? static_cast<std::uint32_t>(kept++) : gone;
+    number[i] = keep(i) ? static_cast<std::uint32_t>(kept++) : gone;
 
   const auto broken = [&](std::array<std::uint32_t, 3>& face) {
     for (std::uint32_t& corner : face) {
@@ -55,6 +52,47 @@ std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& optio
   keep_renumbered(cloud.radius, number, kept);
   keep_renumbered(cloud.area, number, kept);
   return n - kept;
+}
+
+} // namespace
+
+std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& options) {
+  const bool use_normal = !cloud.normal.empty() && options.normals != NormalSource::estimate;
+  const bool use_radius = !cloud.radius.empty() && options.radii != RadiusSource::estimate;
+  const auto usable = [&](std::size_t i) {
+    if (!cloud.position[i].allFinite()) return false;
+    if (!cloud.colour.empty() && !cloud.colour[i].allFinite()) return false;
+    if (!cloud.area.empty() && !positive(cloud.area[i])) return false;
+    if (use_radius && !positive(cloud.radius[i])) return false;
+    return !use_normal || (cloud.normal[i].allFinite() && std::isnormal(cloud.normal[i].stableNorm()));
+  };
+
+  return keep_points(cloud, usable);
+}
+
+std::size_t drop_outliers(PointCloud& cloud) {
+  if (cloud.size() < least_points) return 0;
+  std::array<Eigen::Vector3d, 2> bounds; // without the outermost hundredth of the points on each side of each axis
+  std::vector<double> values(cloud.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      values[i] = cloud.position[i][axis];
+    const std::size_t cut = cloud.size() / 100;
+    for (const std::size_t at : {cut, cloud.size() - 1 - cut}) {
+      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+      bounds[at == cut ? 0 : 1][axis] = values[at];
+    }
+  }
+  const Eigen::Vector3d middle = 0.5 * (bounds[0] + bounds[1]);
+  const double far = outlier_distance * (bounds[1] - bounds[0]).maxCoeff();
+  if (!(far > 0.0)) return 0;
+  const auto near = [&](std::size_t i) { return (cloud.position[i] - middle).cwiseAbs().maxCoeff() <= far; };
+  std::size_t outliers = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    outliers += near(i) ? 0u : 1u;
+  // More than a few are a second object, however far off.
+  return static_cast<double>(outliers) <= outlier_share * static_cast<double>(cloud.size()) ? keep_points(cloud, near)
+                                                                                            : 0;
 }
 
 } // namespace pointgi

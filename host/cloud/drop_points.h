@@ -9,4 +9,8 @@ namespace pointgi {
 /// Returns how many points went.
 std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& options);
 
+/// Removes a few points (at most a thousandth) that lie further off than a thousand times the size of the rest: the
+/// root cube would have to hold them, and the rest would be lost in its rounding. Returns how many went.
+std::size_t drop_outliers(PointCloud& cloud);
+
 } // namespace pointgi

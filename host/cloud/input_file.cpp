@@ -1,5 +1,6 @@
 #include "host/cloud/input_file.h"
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -94,6 +95,12 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
 
 std::string quoted_bytes(std::string_view text, std::size_t max_bytes) {
   return '"' + printable(text, max_bytes) + '"';
+}
+
+bool has_extension(const std::string& path, std::string_view extension) {
+  return path.size() >= extension.size() &&
+         std::equal(extension.rbegin(), extension.rend(), path.rbegin(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 
 } // namespace pointgi

@@ -21,6 +21,9 @@ void require_regular_file(const std::string& path);
 /// Error(memory) when it is larger than the memory that can be had.
 FileBytes read_whole_file(const std::string& path);
 
+/// Whether a file's name ends in `extension` (lower case, with its dot), in whatever case.
+bool has_extension(const std::string& path, std::string_view extension);
+
 /// Text from a file as an error message may show it: in quotes, other than printable ASCII as \xNN, cut after
 /// `max_bytes` bytes of the text. Terminals obey escape sequences, so that nothing of a file goes there as it is.
 std::string quoted_bytes(std::string_view text, std::size_t max_bytes = 40);

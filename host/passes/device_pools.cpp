@@ -1,4 +1,5 @@
 #include "host/passes/device_pools.h"
+#include <algorithm>
 
 namespace pointgi {
 
@@ -40,6 +41,17 @@ DevicePools upload_pools(Session& session, const WidePools& pools) {
 DevicePools upload_pools(Session& session, const OctreePools& pools, PoolStorage storage) {
   if (const auto* wide = std::get_if<WidePools>(&pools)) return upload_pools(session, *wide);
   return upload_pools(session, std::get<StepPools>(pools), storage);
+}
+
+bool images_fit(const DeviceInfo& device, const OctreePools& pools, PoolStorage storage) {
+  const auto* step = std::get_if<StepPools>(&pools);
+  if (step == nullptr || storage == PoolStorage::buffer) return true;
+  const std::size_t texels =
+      std::max({step->nodes.size(), step->points.size() * POINT_TEXELS, step->begin_end.size() / 4 + 1});
+  if (!device.images || 16 * texels > device.max_allocation_bytes) return false;
+  if (storage == PoolStorage::image1d_buffer) return texels <= device.image_buffer_texels;
+  const std::size_t width = std::size_t{1} << image_width_log2;
+  return width <= device.image2d_width && (texels + width - 1) / width <= device.image2d_height;
 }
 
 } // namespace pointgi

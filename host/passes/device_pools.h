@@ -13,6 +13,9 @@ struct DevicePools {
   cl::Memory points;
 };
 
+/// Whether the device's images can hold the pools; true for buffers and for the wide form, which takes no images.
+bool images_fit(const DeviceInfo& device, const OctreePools& pools, PoolStorage storage);
+
 /// Throws Error(device) when images are wanted and the device has none, or too small ones; Error(memory).
 DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage);
 DevicePools upload_pools(Session& session, const WidePools& pools);

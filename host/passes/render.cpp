@@ -10,6 +10,8 @@ namespace {
 constexpr int band_rows = 16;
 /// A launch aims at this many seconds: short for a watchdog or a Ctrl-C, long against the cost of launching.
 constexpr double launch_seconds = 0.1;
+/// Pixels a row of the first launch, of which nothing is known yet: 8000 rays.
+constexpr int first_columns = 16;
 
 enum Channel {
   c_r,
@@ -76,59 +78,102 @@ std::vector<ChannelName> film_channels() {
   return names;
 }
 
+namespace {
+
+/// The render kernel with all of its arguments but the tile's place.
+class TileRenderer {
+public:
+  TileRenderer(Session& session, const DevicePools& pools, const RenderRequest& request)
+      : session_(session), pools_(pools), params_(request.lighting.params) {
+    const DeviceLighting& lighting = request.lighting;
+    params_.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
+    const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
+    kernel_ = session.kernel("render/render.cl", build_options(request.variant, features), "render_pixels");
+    device_params_ = session.upload(&params_, 1);
+    materials_ = session.upload(lighting.materials);
+    delta_ = session.upload(lighting.delta);
+    emitters_ = session.upload(lighting.emitters);
+  }
+
+  pg_uint samples() const { return params_.samples; }
+
+  /// One pass of up to 32 samples over a tile; returns the device's seconds.
+  double launch(int x, int y, int columns, int rows, pg_uint first_sample) {
+    const std::size_t size = static_cast<std::size_t>(columns) * rows * FILM_CHANNELS;
+    if (film_.size < size) film_ = session_.allocate<float>(size);
+    const LaunchShape shape{{static_cast<std::size_t>(columns) * GRID_X, static_cast<std::size_t>(rows) * GRID_Y},
+                            {GRID_X, GRID_Y}};
+    return session_.launch(kernel_, shape, pools_.nodes, pools_.leaves, pools_.points, device_params_, materials_,
+                           delta_, emitters_, film_, static_cast<cl_uint>(x), static_cast<cl_uint>(y),
+                           static_cast<cl_uint>(first_sample));
+  }
+
+  std::vector<float> film(int columns, int rows) {
+    return session_.download(film_, static_cast<std::size_t>(columns) * rows * FILM_CHANNELS);
+  }
+
+private:
+  Session& session_;
+  const DevicePools& pools_;
+  RenderParams params_;
+  cl::Kernel kernel_;
+  Buffer<RenderParams> device_params_;
+  Buffer<Material> materials_;
+  Buffer<DeltaLight> delta_;
+  Buffer<Emitter> emitters_;
+  Buffer<float> film_;
+};
+
+/// A finished tile into its band and the totals.
+void resolve_tile(const std::vector<float>& film, int column, int columns, const RenderRequest& request,
+                  pg_uint samples, Band& band, RenderTotals& totals) {
+  for (int y = 0; y < band.rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const float* pixel = &film[(static_cast<std::size_t>(y) * columns + x) * FILM_CHANNELS];
+      resolve_pixel(pixel, request, static_cast<float>(samples), static_cast<std::size_t>(y) * band.width + column + x,
+                    band);
+      totals.rays += static_cast<std::uint64_t>(pixel[FILM_RAYS]);
+      totals.eye_rays_on_splats += static_cast<std::uint64_t>(pixel[FILM_COVERAGE]);
+      totals.eye_rays_on_back_faces += static_cast<std::uint64_t>(pixel[FILM_BACK_FACE]);
+    }
+  totals.eye_rays += static_cast<std::uint64_t>(columns) * band.rows * samples;
+}
+
+} // namespace
+
 RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
-  const DeviceLighting& lighting = request.lighting;
-  RenderParams params = lighting.params;
-  params.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
-  const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-  cl::Kernel kernel = session.kernel("render/render.cl", build_options(request.variant, features), "render_pixels");
-  const auto device_params = session.upload(&params, 1);
-  const auto materials = session.upload(lighting.materials);
-  const auto delta = session.upload(lighting.delta);
-  const auto emitters = session.upload(lighting.emitters);
-
-  const int width = request.window.x1 - request.window.x0, height = request.window.y1 - request.window.y0;
-  const auto samples = static_cast<float>(params.samples);
+  TileRenderer tiles(session, pools, request);
+  const PixelWindow& window = request.window;
+  const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;
-  int columns = std::min(width, 64); // of a launch; grows or shrinks towards launch_seconds
-  Buffer<float> film;
+  int most_columns = first_columns; // grows or shrinks towards launch_seconds
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
     Band band{
-        request.window.y0 + row, rows, width,
+        window.y0 + row, rows, width,
         std::vector<std::vector<float>>(channel_count, std::vector<float>(static_cast<std::size_t>(width) * rows))};
     for (int column = 0; column < width;) {
-      if (stop()) {
-        totals.interrupted = true;
-        return totals;
-      }
-      const int launched = std::min(columns, width - column);
-      const std::size_t pixels = static_cast<std::size_t>(launched) * rows;
-      if (film.size < pixels * FILM_CHANNELS) film = session.allocate<float>(pixels * FILM_CHANNELS);
-      const LaunchShape shape{{static_cast<std::size_t>(launched) * GRID_X, static_cast<std::size_t>(rows) * GRID_Y},
-                              {GRID_X, GRID_Y}};
-      const double seconds = session.launch(
-          kernel, shape, pools.nodes, pools.leaves, pools.points, device_params, materials, delta, emitters, film,
-          static_cast<cl_uint>(request.window.x0 + column), static_cast<cl_uint>(request.window.y0 + row));
-      totals.device_seconds += seconds;
-      const std::vector<float> sums = session.download(film, pixels * FILM_CHANNELS);
-      for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < launched; ++x) {
-          const float* pixel = &sums[(static_cast<std::size_t>(y) * launched + x) * FILM_CHANNELS];
-          resolve_pixel(pixel, request, samples, static_cast<std::size_t>(y) * width + column + x, band);
-          totals.rays += static_cast<std::uint64_t>(pixel[FILM_RAYS]);
-          totals.eye_rays_on_splats += static_cast<std::uint64_t>(pixel[FILM_COVERAGE]);
-          totals.eye_rays_on_back_faces += static_cast<std::uint64_t>(pixel[FILM_BACK_FACE]);
+      const int columns = std::min(most_columns, width - column);
+      double longest = 0.0;
+      for (pg_uint sample = 0; sample < tiles.samples(); sample += GRID_RAYS) {
+        if (stop()) {
+          totals.interrupted = true;
+          return totals;
         }
-      totals.eye_rays += pixels * params.samples;
-      column += launched;
-      progress((static_cast<double>(row) * width + static_cast<double>(column) * rows) /
-               (static_cast<double>(width) * height));
-      columns = seconds < 0.5 * launch_seconds   ? std::min(columns * 2, 4096)
-                : seconds > 2.0 * launch_seconds ? std::max(columns / 2, 8)
-                                                 : columns;
+        const double seconds = tiles.launch(window.x0 + column, window.y0 + row, columns, rows, sample);
+        totals.device_seconds += seconds;
+        longest = std::max(longest, seconds);
+        const double of_tile = std::min(1.0, static_cast<double>(sample + GRID_RAYS) / tiles.samples());
+        progress((static_cast<double>(row) * width + (column + columns * of_tile) * rows) /
+                 (static_cast<double>(width) * height));
+      }
+      resolve_tile(tiles.film(columns, rows), column, columns, request, tiles.samples(), band, totals);
+      column += columns;
+      most_columns = longest < 0.5 * launch_seconds   ? std::min(most_columns * 2, 4096)
+                     : longest > 2.0 * launch_seconds ? std::max(most_columns / 2, 1)
+                                                      : most_columns;
     }
     take(band);
     totals.rows_done = row + rows;

@@ -46,7 +46,7 @@ DeltaLight device_light(const LightSettings& entry, const Frame& frame, double s
 
 /// Running shares of `weights` in their sum; the last is exactly 1.
 template <typename Entries, typename Weight>
-double accumulate_shares(Entries& entries, Weight weight) {
+void accumulate_shares(Entries& entries, Weight weight) {
   double total = 0.0, sum = 0.0;
   for (const auto& entry : entries)
     total += weight(entry);
@@ -55,7 +55,6 @@ double accumulate_shares(Entries& entries, Weight weight) {
     entry.cumulative = static_cast<float>(sum / total);
   }
   if (!entries.empty()) entries.back().cumulative = 1.0f;
-  return total;
 }
 
 struct Axes {
@@ -147,7 +146,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   };
   for (std::size_t p = 0; p < points.size; ++p)
     if (emitted(p) > 0.0) result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
-  const double total = accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
+  accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
   for (const LightSettings& entry : scene.lights) {
     const DeltaLight light = device_light(entry, frame, scale);
     if (light.strength[0] + light.strength[1] + light.strength[2] > 0.0f) result.delta.push_back(light);
@@ -158,7 +157,6 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   RenderParams& params = result.params;
   params.camera = device_camera(scene, frame);
   copy3(scene.environment / scale, params.environment);
-  params.emitted_power = static_cast<float>(total);
   params.samples = static_cast<pg_uint>(scene.render.spp);
   params.seed = scene.render.seed;
   params.jitter = scene.render.jitter ? 1u : 0u;

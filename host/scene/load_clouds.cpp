@@ -1,3 +1,4 @@
+#include "host/cloud/input_file.h"
 #include "host/scene/load_sections.h"
 #include <algorithm>
 #include <cctype>
@@ -9,11 +10,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_scene(const fs::path& path, const std::string& scene_file) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::error_code missing; // equivalent() fails where a file is missing: then it is not the scene
-  return extension == ".toml" || fs::equivalent(path, scene_file, missing);
+  return has_extension(path.string(), ".toml") || fs::equivalent(path, scene_file, missing);
 }
 
 /// Joined with the scene's folder, and known to be a regular file. It is not opened: a FIFO would block.

@@ -1,4 +1,5 @@
 #include "host/scene/splats.h"
+#include "host/cloud/input_file.h"
 #include "host/cloud/mesh.h"
 #include "host/cloud/ply.h"
 #include "host/error.h"
@@ -15,12 +16,6 @@ namespace {
 /// What a cloud without colours and a material without albedo look like: a light grey, as plaster is.
 constexpr double default_albedo = 0.75;
 
-bool has_extension(const std::string& path, const std::string& extension) {
-  return path.size() >= extension.size() &&
-         std::equal(extension.rbegin(), extension.rend(), path.rbegin(),
-                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-}
-
 std::uint32_t index_of(const Scene& scene, const std::string& name) {
   const auto at = std::find_if(scene.materials.begin(), scene.materials.end(),
                                [&](const MaterialSettings& m) { return m.name == name; });
@@ -28,9 +23,8 @@ std::uint32_t index_of(const Scene& scene, const std::string& name) {
 }
 
 /// Diffuse reflectance of each point: the material's albedo, else the points' colours, else grey.
-void set_albedo(PointCloud& cloud, const MaterialSettings& material, bool& from_points) {
+void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
   if (!material.albedo && !cloud.colour.empty()) {
-    from_points = true;
     for (Eigen::Vector3f& c : cloud.colour)
       for (int k = 0; k < 3; ++k) {
         const float value = std::clamp(c[k], 0.0f, 1.0f);
@@ -65,8 +59,6 @@ void place(PointCloud& cloud, const CloudSettings& settings) {
 
 void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  for (std::size_t i = 0; i < part.size(); ++i)
-    all.source.push_back(static_cast<std::uint32_t>(i));
   all.material.insert(all.material.end(), part.size(), material);
   if (all.cloud.size() == 0) { // the common scene, one cloud, is not copied
     all.cloud = std::move(part);
@@ -115,15 +107,14 @@ WorldSplats load_splats(const Scene& scene) {
     CloudReport& report = all.reports.emplace_back();
     PointCloud cloud = load_cloud(settings, report);
     const std::uint32_t material = index_of(scene, settings.material);
-    set_albedo(cloud, scene.materials[material], all.has_point_colours);
+    set_albedo(cloud, scene.materials[material]);
     place(cloud, settings);
     append(all, std::move(cloud), material);
   }
   for (const ShapeSettings& settings : scene.shapes) {
     PointCloud cloud = sample_shape(settings);
     const std::uint32_t material = index_of(scene, settings.material);
-    bool unused = false;
-    set_albedo(cloud, scene.materials[material], unused);
+    set_albedo(cloud, scene.materials[material]);
     append(all, std::move(cloud), material);
   }
   return all;

@@ -11,9 +11,7 @@ namespace pointgi {
 struct WorldSplats {
   PointCloud cloud;
   std::vector<std::uint32_t> material; ///< index into Scene::materials, one a point
-  std::vector<std::uint32_t> source;   ///< place of the point in its file or shape, one a point
   std::vector<CloudReport> reports;    ///< one a [[cloud]], in the scene's order
-  bool has_point_colours = false;      ///< some colours come from the clouds themselves
 };
 
 /// Reads a cloud (PLY) or mesh (anything else that assimp knows; sampled) and completes it; file's own coordinates.

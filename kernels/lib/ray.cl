@@ -20,7 +20,6 @@ typedef struct Hit {
 inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
   const float3 inverse = 1.0f / ray.direction;
   const float3 a = (-1e-6f - ray.origin) * inverse, b = (1.0f + 1e-6f - ray.origin) * inverse;
-  /* fmin and fmax drop the NaN of 0 * inf: an origin exactly on the plane of a slab the ray runs along is inside. */
   const float3 t0 = fmin(a, b), t1 = fmax(a, b);
   *t_enter = fmax(fmax(t0.x, t0.y), fmax(t0.z, ray.t_min));
   *t_leave = fmin(fmin(t1.x, t1.y), fmin(t1.z, ray.t_max));
@@ -29,10 +28,12 @@ inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
 
 /* Overlapping discs stick out of the surface they stand for, so a ray that leaves a surface would meet its neighbours'
  * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end, in units of the
- * two discs' radii, and its disc faces the same way. A wall across, or the far side of a thin sheet, blocks at any
- * distance, so corners and contacts do not leak. */
+ * two discs' radii, and its disc faces the same way. A wall across, or the far side of a sheet of any thickness, blocks
+ * at any distance, so corners and contacts do not leak. */
 #define SELF_HIT_REACH 1.5f
 #define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
+/* A sheet stored as two coincident sides: the other side is the surface itself as long as it lies within rounding. */
+#define COINCIDENT 1e-5f
 
 typedef struct ShadowEnds {
   float3 origin_normal, target_normal; /* facing the ray or not: the side does not matter, the splat's own normal does */
@@ -40,9 +41,10 @@ typedef struct ShadowEnds {
 } ShadowEnds;
 
 inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
-  const bool at_origin = t < SELF_HIT_REACH * (ends.origin_radius + radius) &&
-                         dot3(normal, ends.origin_normal) > SELF_HIT_COSINE;
-  const bool at_target = t_max - t < SELF_HIT_REACH * (ends.target_radius + radius) &&
-                         dot3(normal, ends.target_normal) > SELF_HIT_COSINE;
-  return at_origin || at_target;
+  const float origin_cosine = dot3(normal, ends.origin_normal), target_cosine = dot3(normal, ends.target_normal);
+  const float before = t_max - t;
+  return (t < SELF_HIT_REACH * (ends.origin_radius + radius) && origin_cosine > SELF_HIT_COSINE) ||
+         (before < SELF_HIT_REACH * (ends.target_radius + radius) && target_cosine > SELF_HIT_COSINE) ||
+         (t < COINCIDENT && origin_cosine < -SELF_HIT_COSINE) ||
+         (before < COINCIDENT && target_cosine < -SELF_HIT_COSINE);
 }

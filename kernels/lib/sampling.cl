@@ -16,17 +16,25 @@ inline float4 random4(SampleId id, uint dimension) {
   return (float4)(unit_float(h.x), unit_float(h.y), unit_float(h.z), unit_float(h.w));
 }
 
-/* Two numbers in [0,1), stratified over the pixel's 32 rays of one pass: the Hammersley set of 32 points, its strata
- * shuffled by a random XOR a pixel, pass and use, so that light samples are independent of the place in the pixel, and
- * jittered inside the strata. z and w are plain random numbers. */
+inline uint reversed_bits(uint v) {
+  v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
+  v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
+  v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
+  v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
+  return (v >> 16) | (v << 16);
+}
+
+/* Two numbers in [0,1), stratified over the pixel's samples: the (0,2)-sequence of van der Corput and Sobol, whose every
+ * power-of-two prefix is stratified, so that 1, 8 or 64 samples are all served well (Kollig and Keller, "Efficient
+ * Multidimensional Sampling", 2002). A random XOR a pixel and use makes it independent of the place in the pixel.
+ * z and w are plain random numbers. */
 inline float4 stratified4(SampleId id, uint dimension) {
-  const uint pass = id.sample / GRID_RAYS, i = id.sample % GRID_RAYS;
-  const uint4 scramble = pcg4d((uint4)(id.pixel.x, id.pixel.y, pass, (id.seed + 0x68E31DA4u) * 0x9E3779B9u + dimension));
-  const uint first = i ^ (scramble.x >> 27);
-  const uint reversed = ((i & 1u) << 4) | ((i & 2u) << 2) | (i & 4u) | ((i & 8u) >> 2) | ((i & 16u) >> 4);
-  const uint second = reversed ^ (scramble.y >> 27);
+  const uint4 scramble = pcg4d((uint4)(id.pixel.x, id.pixel.y, 0x68E31DA4u, id.seed * 0x9E3779B9u + dimension));
+  uint second = 0u;
+  for (uint c = id.sample, v = 1u << 31; c != 0u; c >>= 1, v ^= v >> 1)
+    second ^= (c & 1u) ? v : 0u;
   const float4 r = random4(id, dimension);
-  return (float4)(((float)first + r.x) * (1.0f / GRID_RAYS), ((float)second + r.y) * (1.0f / GRID_RAYS), r.z, r.w);
+  return (float4)(unit_float(reversed_bits(id.sample) ^ scramble.x), unit_float(second ^ scramble.y), r.z, r.w);
 }
 
 /* Place in the pixel, [0,1)^2: sample (i, j) of the 8x4 grid at ((i+u)/8, (j+v)/4). With fewer than 32 samples the

@@ -9,36 +9,41 @@
 #include "lib/step_traversal.cl"
 #endif
 
-#define MAX_RIMS 16 /* rims of discs, one behind another, that a ray passes before it is taken for a miss */
+/* Where a surface bends away from the viewer, rims of discs from behind its horizon stick out, and a ray meets their
+ * backs although the surface has none there. The middle of such a disc is hidden behind a front side close before it,
+ * its own surface's; that of a disc on the inside of an open surface is not. */
+#define RIM_REACH 4.0f /* how close, in units of the two discs' radii: a horizon's chord behind a rim is about 4 */
+#define MAX_RIMS 16    /* rims, one behind another, that a ray passes; the last one then counts */
 
-/* Whether a ray that met the back of this disc met a part of it that is not there: where a surface bends away from the
- * viewer, rims of discs from behind its horizon stick out. The middle of such a disc is hidden behind a front side; that
- * of a disc on the inside of an open surface is not. */
-inline bool sticks_out(POOL_PARAMS, Ray ray, float3 middle) {
-  ray.direction = middle - ray.origin;
+/* Whether the back of the disc `centre` is such a rim. */
+inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
+  ray.direction = centre.xyz - ray.origin;
   ray.t_max = sqrt(dot3(ray.direction, ray.direction));
   ray.direction /= ray.t_max;
   const Hit hit = trace_closest(POOL_ARGS, ray);
-  return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f;
+  return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f &&
+         ray.t_max - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
 }
 
-/* Nearest hit that counts for a viewer: trace_closest without rims that stick out. */
-inline Hit trace_visible(POOL_PARAMS, Ray ray) {
-  Ray rest = ray;
+/* Nearest hit that counts for a viewer: trace_closest without rims that stick out. Adds the rays traced to *rays. */
+inline Hit trace_visible(POOL_PARAMS, Ray ray, float* rays) {
+  Hit hit;
   for (int k = 0; k < MAX_RIMS; ++k) {
-    const Hit hit = trace_closest(POOL_ARGS, rest);
-    if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f ||
-        !sticks_out(POOL_ARGS, ray, pool_point_texel(POINT_TEXELS * hit.splat).xyz))
-      return hit;
-    rest.t_min = hit.t;
+    *rays += 1.0f;
+    hit = trace_closest(POOL_ARGS, ray);
+    if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
+      break;
+    *rays += 1.0f;
+    if (!sticks_out(POOL_ARGS, ray, pool_point_texel(POINT_TEXELS * hit.splat)))
+      break;
+    ray.t_min = hit.t;
   }
-  const Hit none = {ray.t_max, NO_SPLAT};
-  return none;
+  return hit;
 }
 
-/* The surface near the first hit: overlapping splats blended (kernels/lib/blend.cl). */
-inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface) {
-  const Hit first = trace_visible(POOL_ARGS, ray);
+/* The surface near the first hit: overlapping splats blended (kernels/lib/blend.cl). Adds the rays traced to *rays. */
+inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
+  const Hit first = trace_visible(POOL_ARGS, ray, rays);
   if (first.splat == NO_SPLAT)
     return false;
   Blend blend;

@@ -196,9 +196,13 @@ inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
                                           fma(h.ny, (lanes_f)(ends.origin_normal.y), h.nz * ends.origin_normal.z));
         const lanes_f facing_target = fma(h.nx, (lanes_f)(ends.target_normal.x),
                                           fma(h.ny, (lanes_f)(ends.target_normal.y), h.nz * ends.target_normal.z));
-        const lanes_i at_origin = (h.t < SELF_HIT_REACH * (ends.origin_radius + h.radius)) & (facing_origin > SELF_HIT_COSINE);
-        const lanes_i at_target = (ray.t_max - h.t < SELF_HIT_REACH * (ends.target_radius + h.radius)) &
-                                  (facing_target > SELF_HIT_COSINE);
+        const lanes_f before = ray.t_max - h.t;
+        const lanes_i at_origin =
+            ((h.t < SELF_HIT_REACH * (ends.origin_radius + h.radius)) & (facing_origin > SELF_HIT_COSINE)) |
+            ((h.t < COINCIDENT) & (facing_origin < -SELF_HIT_COSINE));
+        const lanes_i at_target =
+            ((before < SELF_HIT_REACH * (ends.target_radius + h.radius)) & (facing_target > SELF_HIT_COSINE)) |
+            ((before < COINCIDENT) & (facing_target < -SELF_HIT_COSINE));
         if (any(hit & ~at_origin & ~at_target))
           return true;
       }

@@ -1,7 +1,8 @@
 /* The picture: a pixel's 32 rays are one work-group, traced together (method.md section 6).
  * NDRange: (GRID_X * columns, GRID_Y * rows), local (GRID_X, GRID_Y); the group at (i, j) renders the image's pixel
- * (first_x + i, first_y + j) into film[(j * columns + i) * FILM_CHANNELS ...]. Any number of samples: more than 32 in
- * passes of 32, of fewer the rest of the group rests. Results do not depend on how an image is cut into launches.
+ * (first_x + i, first_y + j) into film[(j * columns + i) * FILM_CHANNELS ...]. A launch takes samples first_sample to
+ * first_sample + 31 of those a pixel has, and adds to the film unless first_sample is 0; of fewer the rest of the group
+ * rests. Results do not depend on how an image is cut into launches.
  * L = emission + rho/pi * H_direct on front sides; a back face reads 0; a miss reads the environment. */
 #include "lib/direct_light.cl"
 
@@ -26,11 +27,10 @@ inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, float2 at, float
   /* From the camera to the root cube at once: a far camera would cost float precision inside. */
   float t_enter, t_leave;
   Surface s;
-  sums[FILM_RAYS] += 1.0f;
   bool hit = ray_meets_root(ray, &t_enter, &t_leave);
   if (hit) {
     ray.origin = fma((float3)(t_enter), ray.direction, ray.origin);
-    hit = trace_blended(POOL_ARGS, ray, &s);
+    hit = trace_blended(POOL_ARGS, ray, &s, &sums[FILM_RAYS]);
   }
   if (!hit) {
     sums[FILM_DIRECT] += lights.params->environment[0];
@@ -71,7 +71,7 @@ inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, float2 at, float
 __kernel __attribute__((reqd_work_group_size(GRID_X, GRID_Y, 1)))
 void render_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
                    const __global DeltaLight* delta_lights, const __global Emitter* emitters, __global float* film,
-                   uint first_x, uint first_y) {
+                   uint first_x, uint first_y, uint first_sample) {
   __local float group_sums[FILM_SUMS][GRID_RAYS];
   __local uint group_points[GRID_RAYS];
   const uint lane = get_local_id(1) * GRID_X + get_local_id(0);
@@ -83,10 +83,10 @@ void render_pixels(POOL_PARAMS, __constant RenderParams* params, const __global 
   for (int c = 0; c < FILM_SUMS; ++c)
     sums[c] = 0.0f;
   uint point = FILM_NO_POINT;
-  for (id.sample = lane; id.sample < params->samples; id.sample += GRID_RAYS) {
+  id.sample = first_sample + lane;
+  if (id.sample < params->samples) {
     const float2 place = place_in_pixel(id, params->samples, params->jitter != 0u);
-    const uint found = add_sample(POOL_ARGS, lights, id, convert_float2(id.pixel) + place, sums);
-    point = point == FILM_NO_POINT ? found : point;
+    point = add_sample(POOL_ARGS, lights, id, convert_float2(id.pixel) + place, sums);
   }
   for (int c = 0; c < FILM_SUMS; ++c)
     group_sums[c][lane] = sums[c];
@@ -100,11 +100,12 @@ void render_pixels(POOL_PARAMS, __constant RenderParams* params, const __global 
     float sum = 0.0f;
     for (int i = 0; i < GRID_RAYS; ++i)
       sum += group_sums[lane][i];
-    pixel[lane] = sum;
+    pixel[lane] = first_sample == 0u ? sum : pixel[lane] + sum;
   } else if (lane == FILM_SUMS) {
     uint first = FILM_NO_POINT;
     for (int i = GRID_RAYS - 1; i >= 0; --i)
       first = group_points[i] != FILM_NO_POINT ? group_points[i] : first;
-    pixel[FILM_POINT] = as_float(first);
+    if (first_sample == 0u || as_uint(pixel[FILM_POINT]) == FILM_NO_POINT)
+      pixel[FILM_POINT] = as_float(first);
   }
 }

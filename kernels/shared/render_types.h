@@ -25,7 +25,7 @@ typedef struct Camera {
 typedef struct RenderParams {
   Camera camera;        /* bytes 0-63 */
   float environment[3]; /* bytes 64-75: radiance from every direction, scaled */
-  float emitted_power;  /* bytes 76-79: sum of the emitters' luminance * area, scaled */
+  pg_uint pad2;
   pg_uint samples;      /* bytes 80-83: samples a pixel */
   pg_uint seed;         /* bytes 84-87 */
   pg_uint jitter;       /* bytes 88-91: 0: samples at the centres of their strata */

@@ -42,7 +42,8 @@ __kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __g
   if (i >= count)
     return;
   Surface s;
-  const bool hit = trace_blended(POOL_ARGS, ray_of_query(rays + i, step_delta), &s);
+  float traced = 0.0f;
+  const bool hit = trace_blended(POOL_ARGS, ray_of_query(rays + i, step_delta), &s, &traced);
   surfaces[2u * i] = hit ? (float4)(s.normal, s.t) : (float4)(0.0f);
   surfaces[2u * i + 1u] = hit ? (float4)(s.albedo, 1.0f) : (float4)(0.0f);
 }

@@ -143,3 +143,69 @@ TEST_CASE("channels: depth, position, normal, albedo and id of a floor; the envi
   CHECK(mean(sky, "A") == 0.0);
   CHECK(sky.uints.at("PointId").front() == 0xffffffffu);
 }
+
+TEST_CASE("a sheet stored as two coincident sides is lit on either, and shines from either") {
+  const std::string sheet = "[[shape]]\ntype = \"quad\"\ncorner = [-2.0, 0.0, -2.0]\nedge_u = [4.0, 0.0, 0.0]\n"
+                            "edge_v = [0.0, 0.0, 4.0]\nspacing = 0.05\nmaterial = \"floor\"\n";
+  const std::string light = "[[light]]\ntype = \"point\"\nposition = [0.0, 1.0, 0.0]\npower_w = [40.0, 40.0, 40.0]\n";
+  for (const char* form : {"traversal.form=step", "traversal.form=wide"}) {
+    const auto use_form = [&](RenderOptions& o) { o.overrides = {form}; };
+    const Picture one = render_text(floor_scene(0.05, 0.0, light), use_form);
+    const Picture two = render_text(floor_scene(0.05, 0.0, light + sheet), use_form);
+    CHECK(mean(two, "R") == Approx(mean(one, "R")).epsilon(1e-3)); // the same discs: rounding
+    const auto lamp = [](const std::string& side) {
+      return "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\nemission = [5.0, 5.0, 5.0]\n"
+             "[[shape]]\ntype = \"quad\"\ncorner = [-0.3, 1.0, -0.3]\nedge_u = [0.6, 0.0, 0.0]\nedge_v = [0.0, 0.0, "
+             "0.6]\n"
+             "spacing = 0.05\nmaterial = \"lamp\"\n" +
+             side;
+    };
+    const std::string other_side = "[[shape]]\ntype = \"quad\"\ncorner = [-0.3, 1.0, -0.3]\nedge_u = [0.0, 0.0, 0.6]\n"
+                                   "edge_v = [0.6, 0.0, 0.0]\nspacing = 0.05\nmaterial = \"lamp\"\n";
+    const Picture down = render_text(floor_scene(0.05, 0.0, lamp("")), use_form);
+    const Picture both = render_text(floor_scene(0.05, 0.0, lamp(other_side)), use_form);
+    CHECK(mean(down, "R") > 0.1);
+    // Half of the light samples go to the side that faces away: the same mean, more noise (16384 samples).
+    CHECK(mean(both, "R") == Approx(mean(down, "R")).epsilon(0.02));
+  }
+}
+
+TEST_CASE("looking into an open vessel one sees its inside, black, and not through it") {
+  const Picture picture = render_text("version = 1\n[render]\nsize = [64, 48]\n[camera]\nposition = [0.0, 2.2, "
+                                      "1.6]\nlook_at = [0.0, 0.9, 0.0]\nfov_deg = 14.0\n"
+                                      "[environment]\nradiance = [1.0, 1.0, 1.0]\n[[material]]\nname = \"clay\"\ntype "
+                                      "= \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+                                      "[[shape]]\ntype = \"cylinder\"\nbase = [0.0, 0.0, 0.0]\ntop = [0.0, 1.0, "
+                                      "0.0]\nradius = 0.5\nspacing = 0.03\nmaterial = \"clay\"\n"
+                                      "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 0.02, 0.0]\nnormal = [0.0, -1.0, "
+                                      "0.0]\nradius = 0.5\nspacing = 0.03\nmaterial = \"clay\"\n");
+  // The frame's middle half looks at the far wall's inside over the near rim.
+  for (int y = 12; y < 36; ++y)
+    for (int x = 16; x < 48; ++x) {
+      CAPTURE(x, y);
+      REQUIRE(picture.channels.at("A")[static_cast<std::size_t>(y) * 64 + x] == 1.0f);
+    }
+}
+
+TEST_CASE("few samples a pixel are no worse than their number") {
+  // Variance of the pixels times samples a pixel, under an area light: for independent samples it does not depend on
+  // their number, for stratified ones it falls. A fifth to spare for the noise of a variance of 256 pixels.
+  const auto variance = [](int spp) {
+    const Picture picture = render_text(floor_scene(
+        0.05, 0.5,
+        "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\nemission = [5.0, 5.0, 5.0]\n"
+        "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 0.5, 0.0]\nnormal = [0.0, -1.0, 0.0]\nradius = 0.6\n"
+        "spacing = 0.03\nmaterial = \"lamp\"\n",
+        spp));
+    const double middle = mean(picture, "R");
+    double sum = 0.0;
+    for (const float value : picture.channels.at("R"))
+      sum += (value - middle) * (value - middle);
+    return spp * sum / static_cast<double>(picture.channels.at("R").size());
+  };
+  const double one = variance(1);
+  for (const int spp : {2, 4, 8, 16, 32, 64}) {
+    CAPTURE(spp);
+    CHECK(variance(spp) < 1.2 * one);
+  }
+}

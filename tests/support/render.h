@@ -45,15 +45,4 @@ inline double largest(const Picture& picture, const std::string& channel) {
   return most;
 }
 
-/// |a - b| over (|b| + floor), the largest over the pixels.
-inline double largest_relative_difference(const Picture& a, const Picture& b, const std::string& channel,
-                                          double floor) {
-  double most = 0.0;
-  const auto &x = a.channels.at(channel), &y = b.channels.at(channel);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (x[i] != y[i]) // equal infinities (Z of the background) differ by nothing
-      most = std::max(most, std::fabs(static_cast<double>(x[i]) - y[i]) / (std::fabs(y[i]) + floor));
-  return most;
-}
-
 } // namespace pointgi::test

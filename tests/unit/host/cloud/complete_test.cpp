@@ -200,8 +200,8 @@ TEST_CASE("a closed surface that faces inwards is turned, unless the file is to 
   CHECK(report.warnings.empty());
   CHECK(agreement(cloud, outward) == 0);
 
-  complete(cloud = inward, with(NormalSource::flip)); // as automatic finds them, then turned round
-  CHECK(agreement(cloud, outward) == 0);
+  complete(cloud = inward, with(NormalSource::flip)); // what the user says mends it, mends it
+  CHECK(agreement(cloud, outward) == 1);
   complete(cloud = inward, with(NormalSource::estimate));
   CHECK(agreement(cloud, outward) == 1);
 }
@@ -313,4 +313,21 @@ TEST_CASE("the same bits on any number of threads, the same splats at any place 
           worst, std::abs(static_cast<double>(cloud.radius[i]) / static_cast<double>(first.radius[i]) / scale - 1));
     CHECK(worst < 1e-4);
   }
+}
+
+TEST_CASE("a far outlier is dropped, a far second object is not", "[cloud][complete]") {
+  PointCloud cloud = fibonacci_sphere(3000);
+  cloud.position.emplace_back(1e6, 0.0, 0.0);
+  cloud.normal.emplace_back(0.0f, 0.0f, 1.0f);
+  CloudReport report = complete(cloud);
+  CHECK(cloud.size() == 3000);
+  CHECK(report.points_dropped == 1);
+  CHECK(warns_of(report, "thousand times"));
+  PointCloud two = fibonacci_sphere(3000);
+  for (std::size_t i = 0; i < 300; ++i) {
+    two.position.push_back(two.position[i] + Vector3d(1e6, 0.0, 0.0));
+    two.normal.push_back(two.normal[i]);
+  }
+  complete(two);
+  CHECK(two.size() == 3300);
 }

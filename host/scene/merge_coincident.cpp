@@ -1,0 +1,94 @@
+#include "host/scene/merge_coincident.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace pointgi {
+
+namespace {
+
+constexpr float alike_cosine = 0.5f;
+
+/// Order by place and material; equal ones keep their order.
+bool before(const Splat& a, const Splat& b) {
+  if (const int c = std::memcmp(a.position, b.position, sizeof a.position); c != 0) return c < 0;
+  return a.material < b.material;
+}
+
+bool alike(const Splat& a, const Splat& b) {
+  return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] > alike_cosine;
+}
+
+/// What a group of merged splats sums up to.
+struct Sum {
+  Splat first;
+  double normal[3] = {0, 0, 0}, colour[3] = {0, 0, 0}, area = 0;
+  std::size_t count = 0;
+
+  void add(const Splat& s) {
+    for (int k = 0; k < 3; ++k) {
+      normal[k] += s.normal[k];
+      colour[k] += s.colour[k];
+    }
+    area += s.area;
+    first.radius = std::max(first.radius, s.radius);
+    ++count;
+  }
+
+  Splat mean() const {
+    if (count == 1) return first;
+    Splat s = first;
+    const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    for (int k = 0; k < 3; ++k) {
+      s.normal[k] = static_cast<float>(normal[k] / length); // alike within 60 degrees of the first: never zero
+      s.colour[k] = static_cast<float>(colour[k] / static_cast<double>(count));
+    }
+    s.area = static_cast<float>(area);
+    return s;
+  }
+};
+
+} // namespace
+
+std::size_t merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id) {
+  std::vector<std::uint32_t> order(splats.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return before(splats[a], splats[b]) || (!before(splats[b], splats[a]) && a < b);
+  });
+  std::vector<bool> gone(splats.size(), false);
+  std::size_t merged = 0;
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    for (end = begin + 1; end < order.size() && !before(splats[order[begin]], splats[order[end]]);)
+      ++end;
+    if (end == begin + 1) continue;
+    std::vector<std::pair<std::uint32_t, Sum>> sides; // a few: fronts, backs, the faces at a corner
+    for (std::size_t k = begin; k < end; ++k) {
+      const Splat& s = splats[order[k]];
+      auto side =
+          std::find_if(sides.begin(), sides.end(), [&](const auto& other) { return alike(other.second.first, s); });
+      if (side == sides.end()) {
+        sides.push_back({order[k], Sum{s}});
+        side = sides.end() - 1;
+      } else {
+        gone[order[k]] = true;
+        ++merged;
+      }
+      side->second.add(s);
+    }
+    for (const auto& [index, sum] : sides)
+      splats[index] = sum.mean();
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < splats.size(); ++i)
+    if (!gone[i]) {
+      splats[kept] = splats[i];
+      id[kept++] = id[i];
+    }
+  splats.resize(kept);
+  id.resize(kept);
+  return merged;
+}
+
+} // namespace pointgi
