@@ -12,8 +12,9 @@
 /* Where a surface bends away from the viewer, rims of discs from behind its horizon stick out, and a ray meets their
  * backs although the surface has none there. The middle of such a disc is hidden behind a front side close before it,
  * its own surface's; that of a disc on the inside of an open surface is not. */
-#define RIM_REACH 4.0f /* how close, in units of the two discs' radii: a horizon's chord behind a rim is about 4 */
-#define MAX_RIMS 16    /* rims, one behind another, that a ray passes; the last one then counts */
+/* How close, in units of the two discs' radii: across what is thin, an ear or a hoof, but not across a vessel. */
+#define RIM_REACH 8.0f
+#define MAX_RIMS 16 /* rims, one behind another, that a ray passes; the last one then counts */
 
 /* Whether the back of the disc `centre` is such a rim. */
 inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
@@ -27,16 +28,17 @@ inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
 
 /* Nearest hit that counts for a viewer: trace_closest without rims that stick out. Adds the rays traced to *rays. */
 inline Hit trace_visible(POOL_PARAMS, Ray ray, float* rays) {
+  Ray rest = ray;
   Hit hit;
   for (int k = 0; k < MAX_RIMS; ++k) {
     *rays += 1.0f;
-    hit = trace_closest(POOL_ARGS, ray);
+    hit = trace_closest(POOL_ARGS, rest);
     if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
       break;
     *rays += 1.0f;
     if (!sticks_out(POOL_ARGS, ray, pool_point_texel(POINT_TEXELS * hit.splat)))
       break;
-    ray.t_min = hit.t;
+    rest.t_min = hit.t;
   }
   return hit;
 }
