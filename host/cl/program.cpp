@@ -3,6 +3,7 @@
 #include "host/cl/session.h"
 #include "host/error.h"
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -29,7 +30,9 @@ const cl::Program& Session::program(const std::string& file, const std::string& 
 }
 
 cl::Program Session::build(const std::string& file, const std::string& options) {
-  const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options);
+  const char* more = std::getenv("POINTGI_CL_OPTIONS"); // for people who debug kernels: -cl-opt-disable, -g
+  const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options) +
+                                  (more != nullptr && *more != '\0' ? " " + std::string(more) : "");
   const std::string source = kernel_source(file);
   dump(file, all_options, source);
   const std::string key = source + "\n" + all_options + "\n" + info_.platform + "\n" + info_.name + "\n" +

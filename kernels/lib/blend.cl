@@ -28,7 +28,7 @@ typedef struct Blend {
   uint splat, material;
 } Blend;
 
-inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) {
+static inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) {
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
   /* A tiny floor keeps a lone disc visible out to its very rim. */
@@ -42,7 +42,7 @@ inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) 
 }
 
 /* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
-inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
+static inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
   float q;
   const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
   b->normal_of_first = normal.xyz;
@@ -57,7 +57,7 @@ inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 nor
   blend_add(b, t, q, normal.xyz, albedo);
 }
 
-inline void blend_end(const Blend* b, Ray ray, Surface* s) {
+static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
   const float scale = 1.0f / b->weight;
   s->t = b->t * scale;
   s->position = fma((float3)(s->t), ray.direction, ray.origin);

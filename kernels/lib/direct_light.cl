@@ -15,7 +15,7 @@ typedef struct Lights {
 } Lights;
 
 /* Index of the first entry whose cumulative share exceeds u, for entries `stride` floats apart. */
-inline uint pick(const __global float* cumulative, uint stride, uint count, float u) {
+static inline uint pick(const __global float* cumulative, uint stride, uint count, float u) {
   uint low = 0u, high = count - 1u;
   while (low < high) {
     const uint middle = (low + high) / 2u;
@@ -28,7 +28,7 @@ inline uint pick(const __global float* cumulative, uint stride, uint count, floa
 }
 
 /* One shadow ray from the surface towards `direction` (unit), over `distance`; counts itself. */
-inline bool in_light(POOL_PARAMS, const Surface* s, float3 direction, float distance, float3 target_normal,
+static inline bool in_light(POOL_PARAMS, const Surface* s, float3 direction, float distance, float3 target_normal,
                      float target_radius, float step_delta, float* rays) {
   Ray ray;
   ray.origin = s->position;
@@ -47,7 +47,7 @@ inline bool in_light(POOL_PARAMS, const Surface* s, float3 direction, float dist
 
 #ifdef HAS_DELTA_LIGHTS
 /* Irradiance of one point light, I cos / d^2, or directional light, E cos. */
-inline float3 irradiance_of_delta_light(POOL_PARAMS, const Surface* s, const __global DeltaLight* light,
+static inline float3 irradiance_of_delta_light(POOL_PARAMS, const Surface* s, const __global DeltaLight* light,
                                         float step_delta, float* rays) {
   float3 towards = load3(light->vector);
   float distance = INFINITY, falloff = 1.0f;
@@ -68,7 +68,7 @@ inline float3 irradiance_of_delta_light(POOL_PARAMS, const Surface* s, const __g
 
 /* Irradiance H [W/m2, scaled] of the surface from all lights, one estimate; the mean over samples converges to it.
  * Adds the number of shadow rays traced to *rays. */
-inline float3 direct_irradiance(POOL_PARAMS, const Surface* s, Lights lights, SampleId id, float* rays) {
+static inline float3 direct_irradiance(POOL_PARAMS, const Surface* s, Lights lights, SampleId id, float* rays) {
   float3 sum = (float3)(0.0f);
   const float step_delta = lights.params->step_delta;
 #ifdef HAS_DELTA_LIGHTS

@@ -7,7 +7,7 @@
 
 /* Descends from the root to the leaf or empty node whose cell holds p, in [0,1)^3: one step a level,
  * n = c + int(p*N), p = p*N - int(p*N) (method.md section 2). All of it is exact in float. */
-inline uint4 octree_descend(POOL_PARAMS, float3 p) {
+static inline uint4 octree_descend(POOL_PARAMS, float3 p) {
   uint4 node = pool_node(0);
   while (NODE_TYPE(node.x) == NODE_INTERNAL) {
     const float3 scaled = p * (float)OCTREE_N;

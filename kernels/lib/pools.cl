@@ -38,7 +38,7 @@
 #define pool_point_texel(i) (point_pool[i])
 #else
 __constant sampler_t pool_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_NONE | CLK_FILTER_NEAREST;
-inline uint pool_component(uint4 texel, uint i) {
+static inline uint pool_component(uint4 texel, uint i) {
   const uint low = (i & 1u) ? texel.y : texel.x, high = (i & 1u) ? texel.w : texel.z;
   return (i & 2u) ? high : low;
 }

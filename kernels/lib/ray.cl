@@ -17,7 +17,7 @@ typedef struct Hit {
 
 /* The part of the ray in the root cube, widened by a little more than rounding, and inside [t_min, t_max]; false when
  * there is none. */
-inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
+static inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
   const float3 inverse = 1.0f / ray.direction;
   const float3 a = (-1e-6f - ray.origin) * inverse, b = (1.0f + 1e-6f - ray.origin) * inverse;
   const float3 t0 = fmin(a, b), t1 = fmax(a, b);
@@ -40,7 +40,7 @@ typedef struct ShadowEnds {
   float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
 } ShadowEnds;
 
-inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
+static inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
   const float origin_cosine = dot3(normal, ends.origin_normal), target_cosine = dot3(normal, ends.target_normal);
   const float before = t_max - t;
   return (t < SELF_HIT_REACH * (ends.origin_radius + radius) && origin_cosine > SELF_HIT_COSINE) ||

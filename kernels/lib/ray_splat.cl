@@ -5,7 +5,7 @@
  * t > t_min: t = n.(c-o) / n.d, inside where |o + t d - c| <= r (method.md section 6). A ray parallel to the disc
  * divides by zero and misses: inf and NaN fail the comparison of the distance. *q is the distance from the centre
  * squared over the radius squared, in [0, 1] for a hit. */
-inline float ray_disc(float3 o, float3 d, float4 c, float3 n, float* q) {
+static inline float ray_disc(float3 o, float3 d, float4 c, float3 n, float* q) {
   const float3 to_centre = c.xyz - o;
   const float t = dot3(n, to_centre) / dot3(n, d);
   const float3 off = fma((float3)(t), d, -to_centre);

@@ -2,7 +2,7 @@
  * depend on tiles, threads or the order of launches. */
 
 /* The pcg4d hash of Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020. */
-inline uint4 pcg4d(uint4 v) {
+static inline uint4 pcg4d(uint4 v) {
   v = v * 1664525u + 1013904223u;
   v.x += v.y * v.w;
   v.y += v.z * v.x;
@@ -17,4 +17,4 @@ inline uint4 pcg4d(uint4 v) {
 }
 
 /* Uniform in [0, 1): 24 bits, so that the largest value stays below 1 in float. */
-inline float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
+static inline float unit_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }

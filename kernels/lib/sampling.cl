@@ -11,35 +11,33 @@ typedef struct SampleId {
 } SampleId;
 
 /* Four numbers in [0,1) for one use, `dimension`, of one ray. */
-inline float4 random4(SampleId id, uint dimension) {
+static inline float4 random4(SampleId id, uint dimension) {
   const uint4 h = pcg4d((uint4)(id.pixel.x, id.pixel.y, id.sample, id.seed * 0x9E3779B9u + dimension));
   return (float4)(unit_float(h.x), unit_float(h.y), unit_float(h.z), unit_float(h.w));
-}
-
-inline uint reversed_bits(uint v) {
-  v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
-  v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
-  v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
-  v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
-  return (v >> 16) | (v << 16);
 }
 
 /* Two numbers in [0,1), stratified over the pixel's samples: the (0,2)-sequence of van der Corput and Sobol, whose every
  * power-of-two prefix is stratified, so that 1, 8 or 64 samples are all served well (Kollig and Keller, "Efficient
  * Multidimensional Sampling", 2002). A random XOR a pixel and use makes it independent of the place in the pixel.
  * z and w are plain random numbers. */
-inline float4 stratified4(SampleId id, uint dimension) {
+static inline float4 stratified4(SampleId id, uint dimension) {
   const uint4 scramble = pcg4d((uint4)(id.pixel.x, id.pixel.y, 0x68E31DA4u, id.seed * 0x9E3779B9u + dimension));
-  uint second = 0u;
-  for (uint c = id.sample, v = 1u << 31; c != 0u; c >>= 1, v ^= v >> 1)
-    second ^= (c & 1u) ? v : 0u;
+  uint first = 0u, second = 0u, bit = 1u << 31, direction = 1u << 31;
+  for (uint rest = id.sample; rest != 0u; rest >>= 1) {
+    if (rest & 1u) {
+      first ^= bit;
+      second ^= direction;
+    }
+    bit >>= 1;
+    direction ^= direction >> 1;
+  }
   const float4 r = random4(id, dimension);
-  return (float4)(unit_float(reversed_bits(id.sample) ^ scramble.x), unit_float(second ^ scramble.y), r.z, r.w);
+  return (float4)(unit_float(first ^ scramble.x), unit_float(second ^ scramble.y), r.z, r.w);
 }
 
 /* Place in the pixel, [0,1)^2: sample (i, j) of the 8x4 grid at ((i+u)/8, (j+v)/4). With fewer than 32 samples the
  * grid is coarser: 1 -> 1x1, 2 -> 2x1, 4 -> 2x2, 8 -> 4x2, 16 -> 4x4 (other counts leave cells of the next one empty). */
-inline float2 place_in_pixel(SampleId id, uint samples, bool jitter) {
+static inline float2 place_in_pixel(SampleId id, uint samples, bool jitter) {
   uint columns = GRID_X, rows = GRID_Y;
   if (samples <= 16u) {
     columns = samples > 4u ? 4u : samples > 1u ? 2u : 1u;
@@ -52,7 +50,7 @@ inline float2 place_in_pixel(SampleId id, uint samples, bool jitter) {
 }
 
 /* Unit vector about n, density cos/pi. */
-inline float3 cosine_direction(float3 n, float u, float v) {
+static inline float3 cosine_direction(float3 n, float u, float v) {
   float3 a, b;
   tangents(n, &a, &b);
   const float r = sqrt(u), phi = 6.2831853f * v;

@@ -26,12 +26,12 @@ typedef struct Walk {
 #endif
 } Walk;
 
-inline int3 finest_cell(float3 p) {
+static inline int3 finest_cell(float3 p) {
   return clamp(convert_int3(p * (float)FINEST_CELLS), (int3)(0), (int3)(FINEST_CELLS - 1));
 }
 
 /* Reads the leaf at the walk's position and the ray's exit from its cell. */
-inline void walk_enter(POOL_PARAMS, Walk* w) {
+static inline void walk_enter(POOL_PARAMS, Walk* w) {
   w->node = octree_descend(POOL_ARGS, convert_float3(w->position) * FINEST_SIDE);
   const int side = 1 << (MAX_AXIS_BITS - (int)NODE_LEVEL(w->node.x) * OCTREE_AXIS_BITS);
   const int3 low = w->position & (int3)(-side);
@@ -42,7 +42,7 @@ inline void walk_enter(POOL_PARAMS, Walk* w) {
 }
 
 /* Starts at parameter t, where the ray is inside the root cube. */
-inline void walk_start(POOL_PARAMS, Walk* w, Ray ray, float t) {
+static inline void walk_start(POOL_PARAMS, Walk* w, Ray ray, float t) {
   w->origin = ray.origin;
   w->direction = ray.direction;
   /* Below 1e-18 a component moves the ray by less than a finest cell over any distance in the cube. */
@@ -59,7 +59,7 @@ inline void walk_start(POOL_PARAMS, Walk* w, Ray ray, float t) {
 }
 
 /* Goes on to the next leaf; false when the ray leaves the root cube. */
-inline bool walk_next(POOL_PARAMS, Walk* w) {
+static inline bool walk_next(POOL_PARAMS, Walk* w) {
 #ifdef STEP_ABSOLUTE
   w->point = fma((float3)(w->t_exit + w->delta), w->direction, w->origin);
   if (any(w->point < 0.0f) || any(w->point >= 1.0f) || --w->steps_left == 0u)
@@ -94,7 +94,7 @@ inline bool walk_next(POOL_PARAMS, Walk* w) {
   }
 
 /* Nearest hit in (ray.t_min, ray.t_max); of splats hit at the same t the one with the lowest index. */
-inline Hit trace_closest(POOL_PARAMS, Ray ray) {
+static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   Hit best = {ray.t_max, NO_SPLAT};
   float t_enter, t_leave;
   if (!ray_meets_root(ray, &t_enter, &t_leave))
@@ -116,7 +116,7 @@ inline Hit trace_closest(POOL_PARAMS, Ray ray) {
 }
 
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
-inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   float t_enter, t_leave;
   if (!ray_meets_root(ray, &t_enter, &t_leave))
     return false;
@@ -137,7 +137,7 @@ inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 
 /* Adds all discs but the first that are hit in the blend's window. A splat is listed in every cell that it touches; it
  * counts in the one cell that holds its hit, so it counts once. */
-inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
+static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   Walk walk;
   walk_start(POOL_ARGS, &walk, ray, blend->t_first);
   float t_from = -INFINITY;

@@ -17,7 +17,7 @@
 #define MAX_RIMS 16 /* rims, one behind another, that a ray passes; the last one then counts */
 
 /* Whether the back of the disc `centre` is such a rim. */
-inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
+static inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
   ray.direction = centre.xyz - ray.origin;
   ray.t_max = sqrt(dot3(ray.direction, ray.direction));
   ray.direction /= ray.t_max;
@@ -27,7 +27,7 @@ inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
 }
 
 /* Nearest hit that counts for a viewer: trace_closest without rims that stick out. Adds the rays traced to *rays. */
-inline Hit trace_visible(POOL_PARAMS, Ray ray, float* rays) {
+static inline Hit trace_visible(POOL_PARAMS, Ray ray, float* rays) {
   Ray rest = ray;
   Hit hit;
   for (int k = 0; k < MAX_RIMS; ++k) {
@@ -44,7 +44,7 @@ inline Hit trace_visible(POOL_PARAMS, Ray ray, float* rays) {
 }
 
 /* The surface near the first hit: overlapping splats blended (kernels/lib/blend.cl). Adds the rays traced to *rays. */
-inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
+static inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
   const Hit first = trace_visible(POOL_ARGS, ray, rays);
   if (first.splat == NO_SPLAT)
     return false;

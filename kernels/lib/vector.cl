@@ -3,15 +3,15 @@
 #pragma OPENCL FP_CONTRACT OFF
 #include "shared/scalar.h"
 
-inline float dot3(float3 a, float3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static inline float dot3(float3 a, float3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
-inline float3 load3(const __global float* p) { return (float3)(p[0], p[1], p[2]); }
-inline float3 load3_constant(const __constant float* p) { return (float3)(p[0], p[1], p[2]); }
+static inline float3 load3(const __global float* p) { return (float3)(p[0], p[1], p[2]); }
+static inline float3 load3_constant(const __constant float* p) { return (float3)(p[0], p[1], p[2]); }
 
-inline float3 normalize3(float3 v) { return v / sqrt(dot3(v, v)); }
+static inline float3 normalize3(float3 v) { return v / sqrt(dot3(v, v)); }
 
 /* Two unit vectors across the unit vector n (Duff et al. 2017, "Building an orthonormal basis, revisited"). */
-inline void tangents(float3 n, float3* u, float3* v) {
+static inline void tangents(float3 n, float3* u, float3* v) {
   const float s = copysign(1.0f, n.z), a = -1.0f / (s + n.z), b = n.x * n.y * a;
   *u = (float3)(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
   *v = (float3)(b, s + n.y * n.y * a, -n.y);

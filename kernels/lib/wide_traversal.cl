@@ -29,13 +29,13 @@ typedef uint8 lanes_u;
 #define HALVES(op, v) (v)
 #endif
 
-inline float smallest_lane(lanes_f v) {
+static inline float smallest_lane(lanes_f v) {
   const float8 a = HALVES(fmin, v);
   const float4 b = fmin(a.lo, a.hi);
   return fmin(fmin(b.x, b.y), fmin(b.z, b.w));
 }
 
-inline uint smallest_lane_u(lanes_u v) {
+static inline uint smallest_lane_u(lanes_u v) {
   const uint8 a = HALVES(min, v);
   const uint4 b = min(a.lo, a.hi);
   return min(min(b.x, b.y), min(b.z, b.w));
@@ -47,7 +47,7 @@ typedef struct WideRay {
   uint octant;                              /* bit a: the ray runs downwards on axis a */
 } WideRay;
 
-inline WideRay wide_ray(Ray ray) {
+static inline WideRay wide_ray(Ray ray) {
   WideRay w;
   w.origin = ray.origin;
   w.direction = ray.direction;
@@ -61,7 +61,7 @@ inline WideRay wide_ray(Ray ray) {
 
 /* Children whose boxes the ray meets in [t_from, t_to]: a byte a child, in the ray's order, nearest octant in the
  * highest byte; *t_enter by child number. */
-inline ulong children_met(const __global WideNode* node, WideRay ray, float t_from, float t_to, float8* t_enter) {
+static inline ulong children_met(const __global WideNode* node, WideRay ray, float t_from, float t_to, float8* t_enter) {
   const bool dx = (ray.octant & 1u) != 0u, dy = (ray.octant & 2u) != 0u, dz = (ray.octant & 4u) != 0u;
   const float8 near_x = fma(vload8(0, dx ? node->high[0] : node->low[0]), (float8)(ray.inverse.x), (float8)(ray.shift.x));
   const float8 far_x = fma(vload8(0, dx ? node->low[0] : node->high[0]), (float8)(ray.inverse.x), (float8)(ray.shift.x));
@@ -92,7 +92,7 @@ typedef struct WideWalk {
 
 /* Goes down from `reference` to the next leaf whose box is met in [t_from, t_to]; 0 when none is left. Pass 0 to go on
  * with what waits. t_to may shrink from call to call. */
-inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWalk* walk, float t_from, float t_to) {
+static inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWalk* walk, float t_from, float t_to) {
   while (walk->count > 0) {
     walk->count -= 1;
     if (walk->t_enter[walk->count] > t_to)
@@ -117,7 +117,7 @@ inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWalk* wal
   return 0u;
 }
 
-inline void walk_from_root(WideWalk* walk) {
+static inline void walk_from_root(WideWalk* walk) {
   walk->waiting[0] = 0u;
   walk->t_enter[0] = -INFINITY;
   walk->count = 1;
@@ -130,7 +130,7 @@ typedef struct BlockHits {
   uint first;     /* index of lane 0 in the point pool */
 } BlockHits;
 
-inline BlockHits hit_block(const __global float* block, float3 origin, float3 direction) {
+static inline BlockHits hit_block(const __global float* block, float3 origin, float3 direction) {
   BlockHits h;
   const lanes_f cx = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - origin.x;
   const lanes_f cy = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - origin.y;
@@ -159,7 +159,7 @@ inline BlockHits hit_block(const __global float* block, float3 origin, float3 di
   }
 
 /* Nearest hit in (ray.t_min, ray.t_max); of splats hit at the same t the one with the lowest index. */
-inline Hit trace_closest(POOL_PARAMS, Ray ray) {
+static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   Hit best = {ray.t_max, NO_SPLAT};
   const WideRay wide = wide_ray(ray);
   WideWalk walk;
@@ -182,7 +182,7 @@ inline Hit trace_closest(POOL_PARAMS, Ray ray) {
 }
 
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
-inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   const WideRay wide = wide_ray(ray);
   WideWalk walk;
   walk_from_root(&walk);
@@ -212,7 +212,7 @@ inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 }
 
 /* Adds all discs but the first that are hit in the blend's window. */
-inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
+static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   const WideRay wide = wide_ray(ray);
   WideWalk walk;
   walk_from_root(&walk);

@@ -6,7 +6,7 @@
  * L = emission + rho/pi * H_direct on front sides; a back face reads 0; a miss reads the environment. */
 #include "lib/direct_light.cl"
 
-inline Ray eye_ray(__constant RenderParams* params, float2 at) {
+static inline Ray eye_ray(__constant RenderParams* params, float2 at) {
   __constant Camera* camera = &params->camera;
   const float3 d = load3_constant(camera->corner) + at.x * load3_constant(camera->step_x) +
                    at.y * load3_constant(camera->step_y);
@@ -22,7 +22,7 @@ inline Ray eye_ray(__constant RenderParams* params, float2 at) {
 }
 
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it hit first, or FILM_NO_POINT. */
-inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, float2 at, float* sums) {
+static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, float2 at, float* sums) {
   Ray ray = eye_ray(lights.params, at);
   /* From the camera to the root cube at once: a far camera would cost float precision inside. */
   float t_enter, t_leave;

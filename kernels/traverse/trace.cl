@@ -2,7 +2,7 @@
  * NDRange: 1-D, one work-item a ray, padded; work-items past `count` do nothing. */
 #include "lib/traversal.cl"
 
-inline Ray ray_of_query(const __global RayQuery* q, float step_delta) {
+static inline Ray ray_of_query(const __global RayQuery* q, float step_delta) {
   Ray ray;
   ray.origin = load3(q->origin);
   ray.direction = load3(q->direction);
