@@ -59,6 +59,18 @@ static inline WideRay wide_ray(Ray ray) {
   return w;
 }
 
+/* A byte a child, in child order, into the ray's order: child c goes to byte 7 - (c ^ octant), so that the nearest
+ * octant comes to stand highest. Reversing all bytes is an exchange on each of the three axes. */
+static inline ulong mirrored(ulong met, uint octant) {
+  if (!(octant & 1u))
+    met = ((met & 0x00ff00ff00ff00fful) << 8) | ((met >> 8) & 0x00ff00ff00ff00fful);
+  if (!(octant & 2u))
+    met = ((met & 0x0000ffff0000fffful) << 16) | ((met >> 16) & 0x0000ffff0000fffful);
+  if (!(octant & 4u))
+    met = (met << 32) | (met >> 32);
+  return met;
+}
+
 /* Children whose boxes the ray meets in [t_from, t_to]: a byte a child, in the ray's order, nearest octant in the
  * highest byte; *t_enter by child number. */
 static inline ulong children_met(const __global WideNode* node, WideRay ray, float t_from, float t_to, float8* t_enter) {
@@ -72,15 +84,7 @@ static inline ulong children_met(const __global WideNode* node, WideRay ray, flo
   const float8 t0 = max(max(near_x, near_y), max(near_z, (float8)(t_from)));
   const float8 t1 = min(min(far_x, far_y), min(far_z, (float8)(t_to)));
   *t_enter = t0;
-  ulong met = as_ulong(convert_char8(t0 <= t1)) & 0x0101010101010101ul;
-  /* Child c goes to byte 7 - (c ^ octant): reversing all bytes is an exchange on each of the three axes. */
-  if (!dx)
-    met = ((met & 0x00ff00ff00ff00fful) << 8) | ((met >> 8) & 0x00ff00ff00ff00fful);
-  if (!dy)
-    met = ((met & 0x0000ffff0000fffful) << 16) | ((met >> 16) & 0x0000ffff0000fffful);
-  if (!dz)
-    met = (met << 32) | (met >> 32);
-  return met;
+  return mirrored(as_ulong(convert_char8(t0 <= t1)) & 0x0101010101010101ul, ray.octant);
 }
 
 /* Nodes and leaves that wait, with the t at which the ray enters them. */
@@ -89,6 +93,20 @@ typedef struct WideWalk {
   float t_enter[WIDE_STACK];
   int count;
 } WideWalk;
+
+/* Puts the children met (in the ray's order) to wait, farthest first, so that the nearest is taken next. */
+static inline void push_children(WideWalk* walk, const __global WideNode* node, ulong met, float8 t_enter, uint octant) {
+  float t_of[8];
+  vstore8(t_enter, 0, t_of);
+  while (met != 0ul) {
+    const uint low = (uint)(popcount((met & (0ul - met)) - 1ul)) >> 3;
+    met &= met - 1ul;
+    const uint child = (7u - low) ^ octant;
+    walk->waiting[walk->count] = node->child[child];
+    walk->t_enter[walk->count] = t_of[child];
+    walk->count += 1;
+  }
+}
 
 /* Goes down from `reference` to the next leaf whose box is met in [t_from, t_to]; 0 when none is left. Pass 0 to go on
  * with what waits. t_to may shrink from call to call. */
@@ -102,17 +120,8 @@ static inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWa
       return current;
     const __global WideNode* node = nodes + current;
     float8 t_enter;
-    ulong met = children_met(node, ray, t_from, t_to, &t_enter);
-    float t_of[8];
-    vstore8(t_enter, 0, t_of);
-    while (met != 0ul) { /* farthest first, so that the nearest is taken next */
-      const uint low = (uint)(popcount((met & (0ul - met)) - 1ul)) >> 3;
-      met &= met - 1ul;
-      const uint child = (7u - low) ^ ray.octant;
-      walk->waiting[walk->count] = node->child[child];
-      walk->t_enter[walk->count] = t_of[child];
-      walk->count += 1;
-    }
+    const ulong met = children_met(node, ray, t_from, t_to, &t_enter);
+    push_children(walk, node, met, t_enter, ray.octant);
   }
   return 0u;
 }

@@ -77,6 +77,14 @@ struct Tracer {
     return session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, answers,
                           static_cast<cl_uint>(rays.size), 0.0f);
   }
+  /// Rays of one pixel together, where the form has packets.
+  double coherent(const Buffer<RayQuery>& rays, const Buffer<RayAnswer>& answers) {
+    if (variant.form != TraversalForm::wide) return closest(rays, answers);
+    cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_packets");
+    const std::size_t packets = rays.size / 32;
+    return session.launch(kernel, LaunchShape::line(packets, 16), pools.nodes, pools.leaves, pools.points, rays,
+                          answers, static_cast<cl_uint>(packets));
+  }
   double any(const Buffer<RayQuery>& rays, const Buffer<cl_uint>& blocked) {
     cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_any_rays");
     return session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, blocked,
@@ -108,10 +116,10 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
   const auto d_answers = session.allocate<RayAnswer>(std::max(coherent.size(), bounced.size()));
   const auto d_blocked = session.allocate<cl_uint>(bounced.size());
   std::vector<RayAnswer> answers(coherent.size());
-  tracer.closest(d_coherent, d_answers); // warm
+  tracer.coherent(d_coherent, d_answers); // warm
   std::vector<double> a[3], b[3];
   for (int k = 0; k < pairs; ++k) {
-    a[0].push_back(tracer.closest(d_coherent, d_answers));
+    a[0].push_back(tracer.coherent(d_coherent, d_answers));
     b[0].push_back(std::min(peer.closest_packet16(coherent, answers), peer.closest_single(coherent, answers)));
     a[1].push_back(tracer.closest(d_bounced, d_answers));
     b[1].push_back(peer.closest_single(bounced, answers));
