@@ -22,8 +22,8 @@ std::vector<Build> every_build(const DeviceInfo& info) {
     variant.form = TraversalForm::wide;
     variant.lanes = lanes;
     builds.push_back({"traverse/trace.cl", build_options(variant)});
-    builds.push_back({"render/render.cl", build_options(variant, {})});
-    builds.push_back({"render/render.cl", build_options(variant, {true, true, true})});
+    builds.push_back({render_kernel_file(variant), build_options(variant, {})});
+    builds.push_back({render_kernel_file(variant), build_options(variant, {true, true, true})});
   }
   for (const PoolStorage storage : {PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d})
     for (const Stepping stepping : {Stepping::exact, Stepping::absolute_delta})
@@ -35,8 +35,8 @@ std::vector<Build> every_build(const DeviceInfo& info) {
         variant.axis_bits = axis_bits;
         builds.push_back({"traverse/trace.cl", build_options(variant)});
         builds.push_back({"traverse/probe.cl", build_options(variant)});
-        builds.push_back({"render/render.cl", build_options(variant, {})});
-        builds.push_back({"render/render.cl", build_options(variant, {true, true, true})});
+        builds.push_back({render_kernel_file(variant), build_options(variant, {})});
+        builds.push_back({render_kernel_file(variant), build_options(variant, {true, true, true})});
       }
   return builds;
 }

@@ -88,7 +88,9 @@ public:
     const DeviceLighting& lighting = request.lighting;
     params_.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
     const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-    kernel_ = session.kernel("render/render.cl", build_options(request.variant, features), "render_pixels");
+    group_a_pixel_ = request.variant.form == TraversalForm::step;
+    kernel_ =
+        session.kernel(render_kernel_file(request.variant), build_options(request.variant, features), "render_pixels");
     device_params_ = session.upload(&params_, 1);
     materials_ = session.upload(lighting.materials);
     delta_ = session.upload(lighting.delta);
@@ -101,8 +103,9 @@ public:
   double launch(int x, int y, int columns, int rows, pg_uint first_sample) {
     const std::size_t size = static_cast<std::size_t>(columns) * rows * FILM_CHANNELS;
     if (film_.size < size) film_ = session_.allocate<float>(size);
-    const LaunchShape shape{{static_cast<std::size_t>(columns) * GRID_X, static_cast<std::size_t>(rows) * GRID_Y},
-                            {GRID_X, GRID_Y}};
+    const auto x_items = static_cast<std::size_t>(columns), y_items = static_cast<std::size_t>(rows);
+    const LaunchShape shape = group_a_pixel_ ? LaunchShape{{x_items * GRID_X, y_items * GRID_Y}, {GRID_X, GRID_Y}}
+                                             : LaunchShape{{x_items, y_items}, {1, 1}};
     return session_.launch(kernel_, shape, pools_.nodes, pools_.leaves, pools_.points, device_params_, materials_,
                            delta_, emitters_, film_, static_cast<cl_uint>(x), static_cast<cl_uint>(y),
                            static_cast<cl_uint>(first_sample));
@@ -116,6 +119,7 @@ private:
   Session& session_;
   const DevicePools& pools_;
   RenderParams params_;
+  bool group_a_pixel_ = true;
   cl::Kernel kernel_;
   Buffer<RenderParams> device_params_;
   Buffer<Material> materials_;

@@ -19,33 +19,35 @@
 /* Whether the back of the disc `centre` is such a rim. */
 static inline bool sticks_out(POOL_PARAMS, Ray ray, float4 centre) {
   ray.direction = centre.xyz - ray.origin;
-  ray.t_max = sqrt(dot3(ray.direction, ray.direction));
-  ray.direction /= ray.t_max;
+  const float distance = sqrt(dot3(ray.direction, ray.direction));
+  ray.direction /= distance;
+  ray.t_max = distance - 0.05f * centre.w; /* what passes through the middle itself hides nothing */
   const Hit hit = trace_closest(POOL_ARGS, ray);
   return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f &&
-         ray.t_max - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
+         distance - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
 }
 
-/* Nearest hit that counts for a viewer: trace_closest without rims that stick out. Adds the rays traced to *rays. */
-static inline Hit trace_visible(POOL_PARAMS, Ray ray, float* rays) {
+/* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. Adds
+ * the rays traced to *rays. */
+static inline Hit visible_hit(POOL_PARAMS, Ray ray, Hit hit, float* rays) {
   Ray rest = ray;
-  Hit hit;
   for (int k = 0; k < MAX_RIMS; ++k) {
-    *rays += 1.0f;
-    hit = trace_closest(POOL_ARGS, rest);
     if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
       break;
     *rays += 1.0f;
     if (!sticks_out(POOL_ARGS, ray, pool_point_texel(POINT_TEXELS * hit.splat)))
       break;
+    *rays += 1.0f;
     rest.t_min = hit.t;
+    hit = trace_closest(POOL_ARGS, rest);
   }
   return hit;
 }
 
-/* The surface near the first hit: overlapping splats blended (kernels/lib/blend.cl). Adds the rays traced to *rays. */
-static inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
-  const Hit first = trace_visible(POOL_ARGS, ray, rays);
+/* The surface that a viewer sees, `hit` being the ray's nearest hit of all: overlapping splats near the first that counts
+ * are blended (kernels/lib/blend.cl). Adds the rays traced to *rays. */
+static inline bool blended_surface(POOL_PARAMS, Ray ray, Hit hit, Surface* surface, float* rays) {
+  const Hit first = visible_hit(POOL_ARGS, ray, hit, rays);
   if (first.splat == NO_SPLAT)
     return false;
   Blend blend;
@@ -54,4 +56,9 @@ static inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* 
   blend_others(POOL_ARGS, ray, &blend);
   blend_end(&blend, ray, surface);
   return true;
+}
+
+static inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
+  *rays += 1.0f;
+  return blended_surface(POOL_ARGS, ray, trace_closest(POOL_ARGS, ray), surface, rays);
 }
