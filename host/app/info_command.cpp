@@ -59,6 +59,7 @@ ExitCode run_info(const std::string& file) {
   }
   const Frame frame = frame_of(cloud);
   const std::vector<Splat> placed = place_in_cube(splats, frame);
+  // No device is opened for this: the form told of is a CPU device's, unless the scene says.
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, true);
   const OctreeSummary octree = summary_of(build_pools(placed, scene.octree, variant));
   std::printf("  splats      %zu\n", cloud.size());

@@ -106,12 +106,12 @@ PictureAttributes attributes_of(const Scene& scene, const RenderOptions& options
 /// What the picture depends on: splats, lights, camera and samples, as the device reads them.
 std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) {
   const auto bytes = [](const auto& v) {
-    return std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
+    return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
   };
   std::uint64_t hash = fnv1a(bytes(points_of(pools)));
   hash = fnv1a(bytes(lighting.delta), hash);
   hash = fnv1a(bytes(lighting.materials), hash);
-  return fnv1a(std::string(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
+  return fnv1a(std::string_view(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
 }
 
 Scene scene_of(const RenderOptions& options) {
@@ -127,15 +127,14 @@ void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
 
 /// What a black or empty picture most often comes from.
 void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& scene) {
-  const double hits = static_cast<double>(totals.eye_rays_on_splats);
-  if (hits == 0.0 && !totals.interrupted && totals.eye_rays > 0) {
+  if (totals.eye_rays_on_splats == 0 && !totals.interrupted && totals.eye_rays > 0) {
     const Vector3d high = frame.origin + Vector3d::Constant(frame.side), &eye = scene.camera.position;
     spdlog::warn("no eye ray met a splat: the splats lie within [{:.4g}, {:.4g}, {:.4g}] and [{:.4g}, {:.4g}, {:.4g}], "
                  "the camera is at [{:.4g}, {:.4g}, {:.4g}]; are the units the same, and does it look that way?",
                  frame.origin.x(), frame.origin.y(), frame.origin.z(), high.x(), high.y(), high.z(), eye.x(), eye.y(),
                  eye.z());
   }
-  const double backs = hits > 0.0 ? static_cast<double>(totals.eye_rays_on_back_faces) / hits : 0.0;
+  const double backs = totals.back_face_share();
   if (backs > 0.5)
     spdlog::warn(
         "{:.0f} % of the eye rays that hit a splat met its back, which is black: the normals point the other way "

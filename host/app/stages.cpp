@@ -7,12 +7,12 @@ double StageLog::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
-StageRecord& StageLog::start(const std::string& name) {
+void StageLog::start(const std::string& name) {
   StageRecord record;
   record.name = name;
   record.ran = true;
   record.start = seconds();
-  return records_.emplace_back(record);
+  records_.push_back(record);
 }
 
 void StageLog::finish(std::uint64_t items, const std::string& unit, double device_seconds) {

@@ -22,8 +22,8 @@ class StageLog {
 public:
   StageLog() : begin_(std::chrono::steady_clock::now()) {}
 
-  /// Opens a stage; the one before it is closed.
-  StageRecord& start(const std::string& name);
+  /// Opens a stage, which finish() closes.
+  void start(const std::string& name);
   void finish(std::uint64_t items, const std::string& unit, double device_seconds = 0.0);
   void skip(const std::string& name, const std::string& reason);
 

@@ -21,7 +21,7 @@ struct Header {
 };
 
 std::uint64_t hash_of(const std::vector<unsigned char>& binary) {
-  return fnv1a(std::string(binary.begin(), binary.end()));
+  return fnv1a(std::string_view(reinterpret_cast<const char*>(binary.data()), binary.size()));
 }
 
 std::string file_of(const std::string& key) {
@@ -34,7 +34,7 @@ std::string file_of(const std::string& key) {
 
 } // namespace
 
-std::uint64_t fnv1a(const std::string& text, std::uint64_t seed) {
+std::uint64_t fnv1a(std::string_view text, std::uint64_t seed) {
   std::uint64_t hash = seed;
   for (const unsigned char c : text)
     hash = (hash ^ c) * 0x100000001b3ull;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pointgi {
@@ -18,6 +19,6 @@ std::optional<std::vector<unsigned char>> load_binary(const std::string& key);
 void store_binary(const std::string& key, const std::vector<unsigned char>& binary);
 
 /// 64-bit FNV-1a, for file names and scene hashes; the full key inside the file decides.
-std::uint64_t fnv1a(const std::string& text, std::uint64_t seed = 0xcbf29ce484222325ull);
+std::uint64_t fnv1a(std::string_view text, std::uint64_t seed = 0xcbf29ce484222325ull);
 
 } // namespace pointgi

@@ -16,6 +16,13 @@ struct RenderTotals {
   double device_seconds = 0.0;
   bool interrupted = false;
   int rows_done = 0;
+
+  /// Of the eye rays that hit a splat, the share that met its back; 0 when none hit.
+  double back_face_share() const {
+    return eye_rays_on_splats > 0
+               ? static_cast<double>(eye_rays_on_back_faces) / static_cast<double>(eye_rays_on_splats)
+               : 0.0;
+  }
 };
 
 /// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist.

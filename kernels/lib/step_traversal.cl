@@ -18,7 +18,9 @@ typedef struct Walk {
   int3 position; /* finest cell */
   int3 forward;  /* per axis: the ray runs upwards */
   uint4 node;
-  float t_exit;
+  int3 low, high; /* finest cells of the leaf's cell: [low, high) */
+  float3 t_plane; /* where the ray leaves the cell on each axis; infinity on one it runs along */
+  float t_exit;   /* the nearest of these */
 #ifdef STEP_ABSOLUTE
   float delta;
   float3 point;
@@ -34,11 +36,12 @@ static inline int3 finest_cell(float3 p) {
 static inline void walk_enter(POOL_PARAMS, Walk* w) {
   w->node = octree_descend(POOL_ARGS, convert_float3(w->position) * FINEST_SIDE);
   const int side = 1 << (MAX_AXIS_BITS - (int)NODE_LEVEL(w->node.x) * OCTREE_AXIS_BITS);
-  const int3 low = w->position & (int3)(-side);
-  const float3 plane = convert_float3(select(low, low + side, w->forward)) * FINEST_SIDE;
+  w->low = w->position & (int3)(-side);
+  w->high = w->low + side;
+  const float3 plane = convert_float3(select(w->low, w->high, w->forward)) * FINEST_SIDE;
   /* An axis the ray runs along exactly has an infinite inverse: 0 * inf must not become NaN. */
-  const float3 t = select((plane - w->origin) * w->inverse, (float3)(INFINITY), isinf(w->inverse));
-  w->t_exit = fmin(t.x, fmin(t.y, t.z));
+  w->t_plane = select((plane - w->origin) * w->inverse, (float3)(INFINITY), isinf(w->inverse));
+  w->t_exit = fmin(w->t_plane.x, fmin(w->t_plane.y, w->t_plane.z));
 }
 
 /* Starts at parameter t, where the ray is inside the root cube. */
@@ -66,14 +69,10 @@ static inline bool walk_next(POOL_PARAMS, Walk* w) {
     return false;
   w->position = finest_cell(w->point);
 #else
-  const int side = 1 << (MAX_AXIS_BITS - (int)NODE_LEVEL(w->node.x) * OCTREE_AXIS_BITS);
-  const int3 low = w->position & (int3)(-side), high = low + side;
-  const float3 plane = convert_float3(select(low, high, w->forward)) * FINEST_SIDE;
-  const float3 t = select((plane - w->origin) * w->inverse, (float3)(INFINITY), isinf(w->inverse));
   /* Inside the cell on the axes that are not crossed, whatever rounding says: a plane once crossed stays crossed. */
   const int3 at = convert_int3_sat(fma((float3)(w->t_exit), w->direction, w->origin) * (float)FINEST_CELLS);
-  const int3 behind = select(low - 1, high, w->forward);
-  w->position = select(clamp(at, low, high - 1), behind, t <= w->t_exit);
+  const int3 behind = select(w->low - 1, w->high, w->forward);
+  w->position = select(clamp(at, w->low, w->high - 1), behind, w->t_plane <= w->t_exit);
   if (any(w->position < 0) || any(w->position >= FINEST_CELLS))
     return false;
 #endif

@@ -15,17 +15,8 @@ typedef struct PacketHits {
   uint16 splat0, splat1; /* or NO_SPLAT */
 } PacketHits;
 
-static inline float smallest16(float16 v) {
-  const float8 a = fmin(v.lo, v.hi);
-  const float4 b = fmin(a.lo, a.hi);
-  return fmin(fmin(b.x, b.y), fmin(b.z, b.w));
-}
-
-static inline float largest16(float16 v) {
-  const float8 a = fmax(v.lo, v.hi);
-  const float4 b = fmax(a.lo, a.hi);
-  return fmax(fmax(b.x, b.y), fmax(b.z, b.w));
-}
+static inline float smallest16(float16 v) { return smallest8(fmin(v.lo, v.hi)); }
+static inline float largest16(float16 v) { return -smallest16(-v); }
 
 static inline float sum16(float16 v) {
   const float8 a = v.lo + v.hi;

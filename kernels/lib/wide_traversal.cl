@@ -29,11 +29,12 @@ typedef uint8 lanes_u;
 #define HALVES(op, v) (v)
 #endif
 
-static inline float smallest_lane(lanes_f v) {
-  const float8 a = HALVES(fmin, v);
-  const float4 b = fmin(a.lo, a.hi);
-  return fmin(fmin(b.x, b.y), fmin(b.z, b.w));
+static inline float smallest8(float8 v) {
+  const float4 a = fmin(v.lo, v.hi);
+  return fmin(fmin(a.x, a.y), fmin(a.z, a.w));
 }
+
+static inline float smallest_lane(lanes_f v) { return smallest8(HALVES(fmin, v)); }
 
 static inline uint smallest_lane_u(lanes_u v) {
   const uint8 a = HALVES(min, v);
@@ -43,14 +44,12 @@ static inline uint smallest_lane_u(lanes_u v) {
 
 /* A ray as the box tests take it. */
 typedef struct WideRay {
-  float3 origin, direction, inverse, shift; /* t of the plane x is fma(x, inverse.x, shift.x) */
-  uint octant;                              /* bit a: the ray runs downwards on axis a */
+  float3 inverse, shift; /* t of the plane x is fma(x, inverse.x, shift.x) */
+  uint octant;           /* bit a: the ray runs downwards on axis a */
 } WideRay;
 
 static inline WideRay wide_ray(Ray ray) {
   WideRay w;
-  w.origin = ray.origin;
-  w.direction = ray.direction;
   /* Never zero: 1e-18 moves a ray by nothing, and its inverse squared stays finite. */
   const float3 d = select(ray.direction, copysign((float3)(1e-18f), ray.direction), fabs(ray.direction) < 1e-18f);
   w.inverse = 1.0f / d;
@@ -108,8 +107,8 @@ static inline void push_children(WideWalk* walk, const __global WideNode* node, 
   }
 }
 
-/* Goes down from `reference` to the next leaf whose box is met in [t_from, t_to]; 0 when none is left. Pass 0 to go on
- * with what waits. t_to may shrink from call to call. */
+/* The next leaf, near ones first, whose box is met in [t_from, t_to]; 0 when none is left. t_to may shrink from call to
+ * call. */
 static inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWalk* walk, float t_from, float t_to) {
   while (walk->count > 0) {
     walk->count -= 1;
@@ -173,8 +172,7 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   const WideRay wide = wide_ray(ray);
   WideWalk walk;
   walk_from_root(&walk);
-  for (uint leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t); leaf != 0u;
-       leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) {
+  for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_u index = h.first + LANE_NUMBERS;
@@ -195,8 +193,7 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   const WideRay wide = wide_ray(ray);
   WideWalk walk;
   walk_from_root(&walk);
-  for (uint leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max); leaf != 0u;
-       leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) {
+  for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
@@ -225,8 +222,7 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   const WideRay wide = wide_ray(ray);
   WideWalk walk;
   walk_from_root(&walk);
-  for (uint leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end); leaf != 0u;
-       leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) {
+  for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i counts = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
