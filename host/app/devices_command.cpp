@@ -16,14 +16,18 @@ struct Build {
 /// Every kernel file in every variant that the program can ask for.
 std::vector<Build> every_build(const DeviceInfo& info) {
   std::vector<Build> builds{{"traverse/brute_force.cl", ""}};
+  const auto add_render = [&](const TraversalVariant& variant) {
+    builds.push_back({"render/eye_rays.cl", build_options(variant)});
+    builds.push_back({"render/shade.cl", build_options(variant, {})});
+    builds.push_back({"render/shade.cl", build_options(variant, {true, true, true})});
+  };
   for (const unsigned lanes : {8u, 16u}) {
     if (!info.is_cpu) continue; // the wide form's precondition
     TraversalVariant variant;
     variant.form = TraversalForm::wide;
     variant.lanes = lanes;
     builds.push_back({"traverse/trace.cl", build_options(variant)});
-    builds.push_back({render_kernel_file(variant), build_options(variant, {})});
-    builds.push_back({render_kernel_file(variant), build_options(variant, {true, true, true})});
+    add_render(variant);
   }
   for (const PoolStorage storage : {PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d})
     for (const Stepping stepping : {Stepping::exact, Stepping::absolute_delta})
@@ -35,8 +39,7 @@ std::vector<Build> every_build(const DeviceInfo& info) {
         variant.axis_bits = axis_bits;
         builds.push_back({"traverse/trace.cl", build_options(variant)});
         builds.push_back({"traverse/probe.cl", build_options(variant)});
-        builds.push_back({render_kernel_file(variant), build_options(variant, {})});
-        builds.push_back({render_kernel_file(variant), build_options(variant, {true, true, true})});
+        add_render(variant);
       }
   return builds;
 }

@@ -39,6 +39,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
       {"rays", r.rays},
       {"eye_rays", r.eye_rays},
       {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
+      {"eye_mrays_per_s", r.eye_seconds > 0.0 ? 1e-6 * static_cast<double>(r.eye_rays) / r.eye_seconds : 0.0},
       {"back_face_share", r.back_face_share()},
       {"interrupted", r.interrupted}};
   out["stages"] = json::array();

@@ -3,7 +3,7 @@
 
 namespace pointgi {
 
-/// One OpenCL translation unit: the file (below kernels/, e.g. "render/render.cl") with every `#include "..."` replaced
+/// One OpenCL translation unit: the file (below kernels/, e.g. "render/shade.cl") with every `#include "..."` replaced
 /// by that file's text, each file once, and `#line` markers so that messages of a device's compiler name our files.
 /// -I options are not used: they do not travel to every driver. Files come from the binary, or from the folder that
 /// POINTGI_KERNEL_DIR names. Throws Error(usage) when a file is missing there.

@@ -1,4 +1,5 @@
 #include "host/passes/render.h"
+#include "shared/traversal_types.h"
 #include <algorithm>
 #include <cstring>
 
@@ -80,7 +81,11 @@ std::vector<ChannelName> film_channels() {
 
 namespace {
 
-/// The render kernel with all of its arguments but the tile's place.
+struct LaunchSeconds {
+  double eye = 0.0, shade = 0.0;
+};
+
+/// The kernels of the picture with all of their arguments but the tile's place.
 class TileRenderer {
 public:
   TileRenderer(Session& session, const DevicePools& pools, const RenderRequest& request)
@@ -88,9 +93,9 @@ public:
     const DeviceLighting& lighting = request.lighting;
     params_.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
     const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-    group_a_pixel_ = request.variant.form == TraversalForm::step;
-    kernel_ =
-        session.kernel(render_kernel_file(request.variant), build_options(request.variant, features), "render_pixels");
+    packets_ = request.variant.form == TraversalForm::wide;
+    eye_rays_ = session.kernel("render/eye_rays.cl", build_options(request.variant), "trace_eye_rays");
+    shade_ = session.kernel("render/shade.cl", build_options(request.variant, features), "shade_pixels");
     device_params_ = session.upload(&params_, 1);
     materials_ = session.upload(lighting.materials);
     delta_ = session.upload(lighting.delta);
@@ -99,16 +104,25 @@ public:
 
   pg_uint samples() const { return params_.samples; }
 
-  /// One pass of up to 32 samples over a tile; returns the device's seconds.
-  double launch(int x, int y, int columns, int rows, pg_uint first_sample) {
-    const std::size_t size = static_cast<std::size_t>(columns) * rows * FILM_CHANNELS;
-    if (film_.size < size) film_ = session_.allocate<float>(size);
-    const auto x_items = static_cast<std::size_t>(columns), y_items = static_cast<std::size_t>(rows);
-    const LaunchShape shape = group_a_pixel_ ? LaunchShape{{x_items * GRID_X, y_items * GRID_Y}, {GRID_X, GRID_Y}}
-                                             : LaunchShape{{x_items, y_items}, {1, 1}};
-    return session_.launch(kernel_, shape, pools_.nodes, pools_.leaves, pools_.points, device_params_, materials_,
-                           delta_, emitters_, film_, static_cast<cl_uint>(x), static_cast<cl_uint>(y),
-                           static_cast<cl_uint>(first_sample));
+  /// One pass of up to 32 samples over a tile.
+  LaunchSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample) {
+    const std::size_t pixels = static_cast<std::size_t>(columns) * rows;
+    if (film_.size < pixels * FILM_CHANNELS) {
+      film_ = session_.allocate<float>(pixels * FILM_CHANNELS);
+      hits_ = session_.allocate<EyeHits>(pixels);
+    }
+    const auto at_x = static_cast<cl_uint>(x), at_y = static_cast<cl_uint>(y), across = static_cast<cl_uint>(columns),
+               down = static_cast<cl_uint>(rows);
+    const LaunchShape group_a_pixel{{std::size_t{GRID_X} * across, std::size_t{GRID_Y} * down}, {GRID_X, GRID_Y}};
+    const LaunchShape item_a_square{
+        {(across + PACKET_COLUMNS - 1) / PACKET_COLUMNS, (down + PACKET_ROWS - 1) / PACKET_ROWS}, {1, 1}};
+    const cl_uint sample = first_sample;
+    LaunchSeconds seconds;
+    seconds.eye = session_.launch(eye_rays_, packets_ ? item_a_square : group_a_pixel, pools_.nodes, pools_.leaves,
+                                  pools_.points, device_params_, hits_, at_x, at_y, across, down, sample);
+    seconds.shade = session_.launch(shade_, group_a_pixel, pools_.nodes, pools_.leaves, pools_.points, device_params_,
+                                    materials_, delta_, emitters_, hits_, film_, at_x, at_y, sample);
+    return seconds;
   }
 
   std::vector<float> film(int columns, int rows) {
@@ -119,12 +133,13 @@ private:
   Session& session_;
   const DevicePools& pools_;
   RenderParams params_;
-  bool group_a_pixel_ = true;
-  cl::Kernel kernel_;
+  bool packets_ = false; ///< a work-item traces the eye rays of 2 x 2 pixels; else one ray
+  cl::Kernel eye_rays_, shade_;
   Buffer<RenderParams> device_params_;
   Buffer<Material> materials_;
   Buffer<DeltaLight> delta_;
   Buffer<Emitter> emitters_;
+  Buffer<EyeHits> hits_;
   Buffer<float> film_;
 };
 
@@ -166,9 +181,10 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
           totals.interrupted = true;
           return totals;
         }
-        const double seconds = tiles.launch(window.x0 + column, window.y0 + row, columns, rows, sample);
-        totals.device_seconds += seconds;
-        longest = std::max(longest, seconds);
+        const LaunchSeconds seconds = tiles.launch(window.x0 + column, window.y0 + row, columns, rows, sample);
+        totals.eye_seconds += seconds.eye;
+        totals.device_seconds += seconds.eye + seconds.shade;
+        longest = std::max({longest, seconds.eye, seconds.shade});
         const double of_tile = std::min(1.0, static_cast<double>(sample + GRID_RAYS) / tiles.samples());
         progress((static_cast<double>(row) * width + (column + columns * of_tile) * rows) /
                  (static_cast<double>(width) * height));

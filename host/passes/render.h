@@ -1,5 +1,5 @@
 #pragma once
-/// The render stage: a window of the image, band after band (kernels/render/render.cl).
+/// The render stage: a window of the image, band after band (kernels/render).
 #include "host/image/picture_writer.h"
 #include "host/passes/device_pools.h"
 #include "host/scene/lighting.h"
@@ -13,7 +13,8 @@ struct RenderTotals {
   std::uint64_t rays = 0; ///< eye and shadow rays
   std::uint64_t eye_rays_on_splats = 0;
   std::uint64_t eye_rays_on_back_faces = 0;
-  double device_seconds = 0.0;
+  double eye_seconds = 0.0;    ///< of the device, for the nearest hits of the eye rays
+  double device_seconds = 0.0; ///< in all
   bool interrupted = false;
   int rows_done = 0;
 

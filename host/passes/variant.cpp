@@ -15,10 +15,6 @@ TraversalVariant choose_variant(const TraversalSettings& settings, const OctreeS
   return variant;
 }
 
-const char* render_kernel_file(const TraversalVariant& variant) {
-  return variant.form == TraversalForm::wide ? "render/render_packets.cl" : "render/render.cl";
-}
-
 std::string build_options(const TraversalVariant& variant) {
   if (variant.form == TraversalForm::wide)
     return "-D TRAVERSAL_FORM=FORM_WIDE -D WIDE_LANES=" + std::to_string(variant.lanes);

@@ -24,9 +24,6 @@ struct SceneFeatures {
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
 constexpr unsigned image_width_log2 = 12;
 
-/// The file of the render kernel for a variant: a work-group a pixel, or (wide form) a work-item a pixel.
-const char* render_kernel_file(const TraversalVariant& variant);
-
 std::string build_options(const TraversalVariant& variant);
 std::string build_options(const TraversalVariant& variant, const SceneFeatures& features);
 

@@ -37,16 +37,18 @@ static inline float4 stratified4(SampleId id, uint dimension) {
 
 /* Place in the pixel, [0,1)^2: sample (i, j) of the 8x4 grid at ((i+u)/8, (j+v)/4). With fewer than 32 samples the
  * grid is coarser: 1 -> 1x1, 2 -> 2x1, 4 -> 2x2, 8 -> 4x2, 16 -> 4x4 (other counts leave cells of the next one empty). */
+static inline uint2 grid_of(uint samples) {
+  if (samples > 16u)
+    return (uint2)(GRID_X, GRID_Y);
+  return (uint2)(samples > 4u ? 4u : samples > 1u ? 2u : 1u, samples > 8u ? 4u : samples > 2u ? 2u : 1u);
+}
+
 static inline float2 place_in_pixel(SampleId id, uint samples, bool jitter) {
-  uint columns = GRID_X, rows = GRID_Y;
-  if (samples <= 16u) {
-    columns = samples > 4u ? 4u : samples > 1u ? 2u : 1u;
-    rows = samples > 8u ? 4u : samples > 2u ? 2u : 1u;
-  }
+  const uint2 grid = grid_of(samples);
   const uint i = id.sample % GRID_RAYS;
   const float4 r = random4(id, 0u);
   const float u = jitter ? r.x : 0.5f, v = jitter ? r.y : 0.5f;
-  return (float2)(((float)(i % columns) + u) / (float)columns, ((float)(i / columns) + v) / (float)rows);
+  return (float2)(((float)(i % grid.x) + u) / (float)grid.x, ((float)(i / grid.x) + v) / (float)grid.y);
 }
 
 /* Unit vector about n, density cos/pi. */

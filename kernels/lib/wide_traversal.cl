@@ -29,12 +29,21 @@ typedef uint8 lanes_u;
 #define HALVES(op, v) (v)
 #endif
 
+/* min and max, not fmin and fmax, which pay for NaN: a hit is never NaN. */
 static inline float smallest8(float8 v) {
-  const float4 a = fmin(v.lo, v.hi);
-  return fmin(fmin(a.x, a.y), fmin(a.z, a.w));
+  const float4 a = min(v.lo, v.hi);
+  return min(min(a.x, a.y), min(a.z, a.w));
 }
 
-static inline float smallest_lane(lanes_f v) { return smallest8(HALVES(fmin, v)); }
+/* Byte k is 1 where lane k of a comparison is true. */
+static inline ulong byte_a_lane(int8 comparison) {
+  return as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
+}
+
+/* Index of the lowest byte that is not zero. */
+static inline uint lowest_byte(ulong bytes) { return (uint)popcount((bytes & (0ul - bytes)) - 1ul) >> 3; }
+
+static inline float smallest_lane(lanes_f v) { return smallest8(HALVES(min, v)); }
 
 static inline uint smallest_lane_u(lanes_u v) {
   const uint8 a = HALVES(min, v);
@@ -83,7 +92,7 @@ static inline ulong children_met(const __global WideNode* node, WideRay ray, flo
   const float8 t0 = max(max(near_x, near_y), max(near_z, (float8)(t_from)));
   const float8 t1 = min(min(far_x, far_y), min(far_z, (float8)(t_to)));
   *t_enter = t0;
-  return mirrored(as_ulong(convert_char8(t0 <= t1)) & 0x0101010101010101ul, ray.octant);
+  return mirrored(byte_a_lane(t0 <= t1), ray.octant);
 }
 
 /* Nodes and leaves that wait, with the t at which the ray enters them. */
@@ -98,9 +107,8 @@ static inline void push_children(WideWalk* walk, const __global WideNode* node, 
   float t_of[8];
   vstore8(t_enter, 0, t_of);
   while (met != 0ul) {
-    const uint low = (uint)(popcount((met & (0ul - met)) - 1ul)) >> 3;
+    const uint child = (7u - lowest_byte(met)) ^ octant;
     met &= met - 1ul;
-    const uint child = (7u - low) ^ octant;
     walk->waiting[walk->count] = node->child[child];
     walk->t_enter[walk->count] = t_of[child];
     walk->count += 1;

@@ -1,21 +1,7 @@
 /* One sample of a pixel: from the image to radiance.
  * L = emission + rho/pi * H_direct on front sides; a back face reads 0; a miss reads the environment. */
 #include "lib/direct_light.cl"
-
-static inline Ray eye_ray(__constant RenderParams* params, float2 at) {
-  __constant Camera* camera = &params->camera;
-  const float3 d = load3_constant(camera->corner) + at.x * load3_constant(camera->step_x) +
-                   at.y * load3_constant(camera->step_y);
-  Ray ray;
-  ray.origin = load3_constant(camera->origin);
-  ray.direction = normalize3(d);
-  ray.t_min = 0.0f;
-  ray.t_max = INFINITY;
-#ifdef STEP_ABSOLUTE
-  ray.step_delta = params->step_delta;
-#endif
-  return ray;
-}
+#include "render/camera.cl"
 
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
@@ -56,16 +42,4 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   sums[FILM_DIRECT + 1] += radiance.y;
   sums[FILM_DIRECT + 2] += radiance.z;
   return s.splat;
-}
-
-/* The same for an eye ray that is traced on its own. */
-static inline uint add_traced_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float* sums) {
-  /* From the camera to the root cube at once: a far camera would cost float precision inside. */
-  float t_enter, t_leave;
-  Hit hit = {ray.t_max, NO_SPLAT};
-  if (ray_meets_root(ray, &t_enter, &t_leave)) {
-    ray.origin = fma((float3)(t_enter), ray.direction, ray.origin);
-    hit = trace_closest(POOL_ARGS, ray);
-  }
-  return add_sample(POOL_ARGS, lights, id, ray, t_enter, hit, sums);
 }

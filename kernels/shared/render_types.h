@@ -36,6 +36,12 @@ typedef struct RenderParams {
   pg_uint pad1;
 } RenderParams;
 
+/* What the 32 eye rays of a pixel meet, in the order of its samples. */
+typedef struct EyeHits {
+  float t[GRID_RAYS];       /* bytes 0-127: from the ray's start (kernels/render/camera.cl); or infinity */
+  pg_uint splat[GRID_RAYS]; /* bytes 128-255: index into the point pool, or NO_SPLAT */
+} EyeHits;
+
 #define LIGHT_POINT 0u
 #define LIGHT_DIRECTIONAL 1u
 

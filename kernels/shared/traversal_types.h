@@ -17,4 +17,23 @@ typedef struct RayAnswer {
   pg_uint splat; /* bytes 4-7: index into the point pool, or NO_SPLAT */
 } RayAnswer;
 
+/* Rays of one origin that are traced together: 2 x 2 pixels of 8 x 4 rays, pixel after pixel, a component of all rays
+ * side by side. Any other rays of one origin will do; those of a pixel, and of half a pixel, should run close together. */
+#define PACKET_COLUMNS 2
+#define PACKET_ROWS 2
+#define PACKET_RAYS (32 * PACKET_COLUMNS * PACKET_ROWS)
+
+typedef struct RayPacketQuery {
+  float direction[3][PACKET_RAYS]; /* bytes 0-1535: unit */
+  float origin[3];                 /* bytes 1536-1547 */
+  float t_min;                     /* bytes 1548-1551 */
+  float t_max;                     /* bytes 1552-1555 */
+  pg_uint reserved[11];            /* bytes 1556-1599 */
+} RayPacketQuery;
+
+typedef struct RayPacketAnswer {
+  float t[PACKET_RAYS];       /* bytes 0-511 */
+  pg_uint splat[PACKET_RAYS]; /* bytes 512-1023 */
+} RayPacketAnswer;
+
 #endif

@@ -31,6 +31,10 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[20] = sizeof(Material);
   sizes[21] = sizeof(RayQuery);
   sizes[22] = sizeof(RayAnswer);
+  sizes[23] = sizeof(RayPacketQuery);
+  sizes[24] = OFFSET(RayPacketQuery, t_max);
+  sizes[25] = sizeof(RayPacketAnswer);
+  sizes[26] = sizeof(EyeHits);
 }
 
 /* nodes[i] = the leaf or empty node that holds positions[i] (xyz), for i < count. */

@@ -51,36 +51,26 @@ __kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __g
 #if TRAVERSAL_FORM == FORM_WIDE
 #include "lib/wide_packet.cl"
 
-/* answers[i] = nearest hit of rays[i], a packet of 32 a work-item: rays 32 i to 32 i + 31 must have one origin, t_min and
- * t_max. NDRange: 1-D, one work-item a packet, padded. */
-__kernel void trace_packets(POOL_PARAMS, const __global RayQuery* rays, __global RayAnswer* answers, uint packets) {
+/* answers[i] = nearest hits of packets[i]. NDRange: 1-D, one work-item a packet, padded. */
+__kernel void trace_packets(POOL_PARAMS, const __global RayPacketQuery* packets, __global RayPacketAnswer* answers,
+                            uint count) {
   const uint i = get_global_id(0);
-  if (i >= packets)
+  if (i >= count)
     return;
-  const __global RayQuery* of = rays + 32u * i;
-  float x[32];
-  float y[32];
-  float z[32];
-  for (int k = 0; k < 32; ++k) {
-    x[k] = of[k].direction[0];
-    y[k] = of[k].direction[1];
-    z[k] = of[k].direction[2];
-  }
   RayPacket p;
-  p.origin = load3(of->origin);
-  p.dx0 = vload16(0, x), p.dx1 = vload16(1, x);
-  p.dy0 = vload16(0, y), p.dy1 = vload16(1, y);
-  p.dz0 = vload16(0, z), p.dz1 = vload16(1, z);
-  p.t_min = of->t_min;
-  p.t_max = of->t_max;
-  const PacketHits hits = trace_packet(POOL_ARGS, &p);
-  float t[32];
-  uint splat[32];
-  vstore16(hits.t0, 0, t), vstore16(hits.t1, 1, t);
-  vstore16(hits.splat0, 0, splat), vstore16(hits.splat1, 1, splat);
-  for (int k = 0; k < 32; ++k) {
-    answers[32u * i + k].t = t[k];
-    answers[32u * i + k].splat = splat[k];
+  for (int g = 0; g < PACKET_GROUPS; ++g) {
+    p.x[g] = vload16(g, packets[i].direction[0]);
+    p.y[g] = vload16(g, packets[i].direction[1]);
+    p.z[g] = vload16(g, packets[i].direction[2]);
+  }
+  p.origin = load3(packets[i].origin);
+  p.t_min = packets[i].t_min;
+  p.t_max = packets[i].t_max;
+  PacketHits hits;
+  trace_packet(POOL_ARGS, &p, &hits);
+  for (int g = 0; g < PACKET_GROUPS; ++g) {
+    vstore16(hits.t[g], g, answers[i].t);
+    vstore16(hits.splat[g], g, answers[i].splat);
   }
 }
 #endif

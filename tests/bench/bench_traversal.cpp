@@ -1,14 +1,17 @@
 /// Rays through the octree against Embree over the same splats, rays and threads, A B A B, medians of the pairs.
-///   bench_traversal [--json FILE] [--splats N,…] [--pairs K] [--form step|wide] [CLOUD.ply …]
+///   bench_traversal [--json FILE] [--splats N,…] [--pairs K] [--form step|wide] [--clock wall|cpu] [CLOUD.ply …]
 #include "host/app/default_view.h"
 #include "host/app/prepare.h"
 #include "host/passes/device_pools.h"
+#include "host/passes/ray_packets.h"
 #include "host/scene/lighting.h"
 #include "tests/bench/embree_peer.h"
 #include "tests/bench/synthetic_blob.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -26,14 +29,26 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// 8x4 rays a pixel, a pixel's rays together, from the default camera.
+/// The pixels of the image in the order in which a renderer takes them: tiles of 16x16, in them squares of 2x2.
+std::vector<Eigen::Vector2i> pixels_by_tile() {
+  constexpr int tile = 16;
+  std::vector<Eigen::Vector2i> pixels;
+  for (int y = 0; y < image; y += tile)
+    for (int x = 0; x < image; x += tile)
+      for (int k = 0; k < tile * tile; ++k)
+        pixels.emplace_back(x + k / 4 % (tile / 2) * 2 + k % 2, y + k / (2 * tile) * 2 + k / 2 % 2);
+  return pixels;
+}
+
+/// 8x4 rays a pixel, a pixel's rays together, from the scene's camera.
 std::vector<RayQuery> eye_rays(const Scene& scene, const Frame& frame) {
   const Camera camera = device_camera(scene, frame);
   std::vector<RayQuery> rays;
-  for (int p = 0; p < image * image; ++p)
+  rays.reserve(std::size_t{32} * image * image);
+  for (const Eigen::Vector2i& pixel : pixels_by_tile())
     for (int s = 0; s < 32; ++s) {
-      const auto x = static_cast<float>(p % image + (s % 8 + 0.5) / 8.0),
-                 y = static_cast<float>(p / image + (s / 8 + 0.5) / 4.0);
+      const auto x = static_cast<float>(pixel.x() + (s % 8 + 0.5) / 8.0),
+                 y = static_cast<float>(pixel.y() + (s / 8 + 0.5) / 4.0);
       Eigen::Vector3f d;
       for (int a = 0; a < 3; ++a)
         d[a] = camera.corner[a] + x * camera.step_x[a] + y * camera.step_y[a];
@@ -67,96 +82,168 @@ std::vector<RayQuery> bounced_rays(const std::vector<Splat>& splats, std::size_t
   return rays;
 }
 
+/// What a measurement counts: the wall's seconds, or those that the process computed on all its threads, which other
+/// programs on the machine disturb less.
+clockid_t clock_id = CLOCK_MONOTONIC;
+
+template <typename Work>
+double seconds_of(const Work& work) {
+  timespec start, end;
+  clock_gettime(clock_id, &start);
+  work();
+  clock_gettime(clock_id, &end);
+  return static_cast<double>(end.tv_sec - start.tv_sec) + 1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec);
+}
+
 struct Tracer {
   Session& session;
   DevicePools pools;
   TraversalVariant variant;
 
-  double closest(const Buffer<RayQuery>& rays, const Buffer<RayAnswer>& answers) {
+  void closest(const Buffer<RayQuery>& rays, const Buffer<RayAnswer>& answers) {
     cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_closest_rays");
-    return session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, answers,
-                          static_cast<cl_uint>(rays.size), 0.0f);
+    session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, answers,
+                   static_cast<cl_uint>(rays.size), 0.0f);
   }
-  /// Rays of one pixel together, where the form has packets.
-  double coherent(const Buffer<RayQuery>& rays, const Buffer<RayAnswer>& answers) {
-    if (variant.form != TraversalForm::wide) return closest(rays, answers);
+  /// Rays of one pixel together.
+  void packets(const Buffer<RayPacketQuery>& rays, const Buffer<RayPacketAnswer>& answers) {
     cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_packets");
-    const std::size_t packets = rays.size / 32;
-    return session.launch(kernel, LaunchShape::line(packets, 16), pools.nodes, pools.leaves, pools.points, rays,
-                          answers, static_cast<cl_uint>(packets));
+    session.launch(kernel, LaunchShape::line(rays.size, 1), pools.nodes, pools.leaves, pools.points, rays, answers,
+                   static_cast<cl_uint>(rays.size));
   }
-  double any(const Buffer<RayQuery>& rays, const Buffer<cl_uint>& blocked) {
+  void any(const Buffer<RayQuery>& rays, const Buffer<cl_uint>& blocked) {
     cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_any_rays");
-    return session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, blocked,
-                          static_cast<cl_uint>(rays.size), 0.0f);
+    session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, blocked,
+                   static_cast<cl_uint>(rays.size), 0.0f);
   }
 };
 
-nlohmann::json measure(Session& session, const std::string& name, const WorldSplats& world, TraversalForm form,
-                       int pairs) {
-  Scene scene;
-  scene.traversal.form = form;
+/// Seconds of both sides, pair after pair.
+struct Pairs {
+  std::vector<double> ours, theirs;
+
+  double ratio() const {
+    std::vector<double> ratios;
+    for (std::size_t k = 0; k < ours.size(); ++k)
+      ratios.push_back(theirs[k] / ours[k]);
+    return median(ratios);
+  }
+};
+
+nlohmann::json report_rays(const char* kind, const Pairs& pairs, std::size_t rays) {
+  const double ours = 1e-6 * static_cast<double>(rays) / median(pairs.ours),
+               theirs = 1e-6 * static_cast<double>(rays) / median(pairs.theirs);
+  std::printf("  %-10s %7.2f Mrays/s   Embree %7.2f   ratio %.2f\n", kind, ours, theirs, pairs.ratio());
+  return {{"mrays_per_s", ours}, {"embree_mrays_per_s", theirs}, {"ratio", pairs.ratio()}};
+}
+
+Pairs measure_build(const std::vector<Splat>& splats, const OctreeSettings& octree, const TraversalVariant& variant,
+                    int pairs) {
+  Pairs result;
+  for (int k = 0; k < pairs; ++k) {
+    result.ours.push_back(seconds_of([&] { build_pools(splats, octree, variant); }));
+    result.theirs.push_back(seconds_of([&] { EmbreePeer peer(splats); }));
+  }
+  return result;
+}
+
+/// Hits of all rays, in packets where the form has them; Embree's best of its three ways to ask.
+Pairs measure_coherent(Tracer& tracer, const EmbreePeer& peer, const std::vector<RayQuery>& rays, int pairs,
+                       double& hit_share) {
+  std::vector<RayAnswer> answers(rays.size());
+  const bool packets = tracer.variant.form == TraversalForm::wide;
+  const auto on_device = tracer.session.upload(rays);
+  const auto device_answers = tracer.session.allocate<RayAnswer>(rays.size());
+  const std::vector<RayPacketQuery> as_packets = packets_of(rays);
+  std::vector<RayPacketAnswer> peer_packet_answers(as_packets.size());
+  const auto packets_on_device = tracer.session.upload(as_packets);
+  const auto packet_answers = tracer.session.allocate<RayPacketAnswer>(as_packets.size());
+  const auto ours = [&] {
+    if (packets)
+      tracer.packets(packets_on_device, packet_answers);
+    else
+      tracer.closest(on_device, device_answers);
+  };
+  ours(); // warm
+  Pairs result;
+  for (int k = 0; k < pairs; ++k) {
+    result.ours.push_back(seconds_of(ours));
+    result.theirs.push_back(std::min({seconds_of([&] { peer.closest_packet16(as_packets, peer_packet_answers); }),
+                                      seconds_of([&] { peer.closest_stream32(rays, answers); }),
+                                      seconds_of([&] { peer.closest_single(rays, answers); })}));
+  }
+  const auto hits = std::count_if(answers.begin(), answers.end(), [](const auto& a) { return a.splat != NO_SPLAT; });
+  hit_share = static_cast<double>(hits) / static_cast<double>(rays.size());
+  return result;
+}
+
+/// Bounced rays: nearest hit, then any hit.
+std::array<Pairs, 2> measure_incoherent(Tracer& tracer, const EmbreePeer& peer, const std::vector<RayQuery>& rays,
+                                        int pairs) {
+  const auto on_device = tracer.session.upload(rays);
+  const auto device_answers = tracer.session.allocate<RayAnswer>(rays.size());
+  const auto blocked = tracer.session.allocate<cl_uint>(rays.size());
+  std::vector<RayAnswer> answers(rays.size());
+  std::array<Pairs, 2> result;
+  for (int k = 0; k < pairs; ++k) {
+    result[0].ours.push_back(seconds_of([&] { tracer.closest(on_device, device_answers); }));
+    result[0].theirs.push_back(seconds_of([&] { peer.closest_single(rays, answers); }));
+    result[1].ours.push_back(seconds_of([&] { tracer.any(on_device, blocked); }));
+    result[1].theirs.push_back(seconds_of([&] { peer.any_single(rays); }));
+  }
+  return result;
+}
+
+nlohmann::json measure(Session& session, const std::string& name, const WorldSplats& world, Scene scene, int pairs) {
   scene.render.width = scene.render.height = image;
-  choose_camera(scene, world);
+  if (!scene.camera.chosen) choose_camera(scene, world);
   const Frame frame = frame_of(world.cloud);
   const std::vector<Splat> splats = place_in_cube(world, frame);
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
-  std::vector<double> build, build_peer;
-  for (int k = 0; k < pairs; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    build_pools(splats, scene.octree, variant);
-    build.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    build_peer.push_back(EmbreePeer(splats).build_seconds());
-  }
+  const Pairs build = measure_build(splats, scene.octree, variant, pairs);
   const OctreePools pools = build_pools(splats, scene.octree, variant);
   Tracer tracer{session, upload_pools(session, pools, variant.storage), variant};
   const EmbreePeer peer(splats);
-  const auto coherent = eye_rays(scene, frame), bounced = bounced_rays(splats, 1'000'000);
-  const auto d_coherent = session.upload(coherent), d_bounced = session.upload(bounced);
-  const auto d_answers = session.allocate<RayAnswer>(std::max(coherent.size(), bounced.size()));
-  const auto d_blocked = session.allocate<cl_uint>(bounced.size());
-  std::vector<RayAnswer> answers(coherent.size());
-  tracer.coherent(d_coherent, d_answers); // warm
-  std::vector<double> a[3], b[3];
-  for (int k = 0; k < pairs; ++k) {
-    a[0].push_back(tracer.coherent(d_coherent, d_answers));
-    b[0].push_back(std::min(peer.closest_packet16(coherent, answers), peer.closest_single(coherent, answers)));
-    a[1].push_back(tracer.closest(d_bounced, d_answers));
-    b[1].push_back(peer.closest_single(bounced, answers));
-    a[2].push_back(tracer.any(d_bounced, d_blocked));
-    b[2].push_back(peer.any_single(bounced));
-  }
+  const std::vector<RayQuery> coherent = eye_rays(scene, frame), bounced = bounced_rays(splats, 1'000'000);
+  double hit_share = 0.0;
+  const Pairs coherent_pairs = measure_coherent(tracer, peer, coherent, pairs, hit_share);
+  const auto [closest, any] = measure_incoherent(tracer, peer, bounced, pairs);
   const OctreeSummary octree = summary_of(pools);
+  const double bytes = static_cast<double>(octree.bytes) / static_cast<double>(splats.size());
+  std::printf("%s, %zu splats, form %s, %.0f bytes a splat; %.0f %% of the eye rays hit\n", name.c_str(), splats.size(),
+              octree.form, bytes, 100.0 * hit_share);
   nlohmann::json row{{"name", name},
                      {"splats", splats.size()},
                      {"form", octree.form},
-                     {"bytes_per_splat", static_cast<double>(octree.bytes) / static_cast<double>(splats.size())}};
-  std::printf("%s, %zu splats, form %s, %.0f bytes a splat\n", name.c_str(), splats.size(), octree.form,
-              row["bytes_per_splat"].get<double>());
-  const char* kinds[3] = {"coherent", "incoherent", "any-hit"};
-  for (int i = 0; i < 3; ++i) {
-    const auto rays = static_cast<double>(i == 0 ? coherent.size() : bounced.size());
-    std::vector<double> ratios;
-    for (int k = 0; k < pairs; ++k)
-      ratios.push_back(b[i][static_cast<std::size_t>(k)] / a[i][static_cast<std::size_t>(k)]);
-    const double ours = 1e-6 * rays / median(a[i]), theirs = 1e-6 * rays / median(b[i]);
-    row[kinds[i]] = {{"mrays_per_s", ours}, {"embree_mrays_per_s", theirs}, {"ratio", median(ratios)}};
-    std::printf("  %-10s %7.2f Mrays/s   Embree %7.2f   ratio %.2f\n", kinds[i], ours, theirs, median(ratios));
-  }
-  std::vector<double> ratios;
-  for (int k = 0; k < pairs; ++k)
-    ratios.push_back(build[static_cast<std::size_t>(k)] / build_peer[static_cast<std::size_t>(k)]);
-  row["build"] = {{"seconds", median(build)}, {"embree_seconds", median(build_peer)}, {"ratio", median(ratios)}};
-  std::printf("  %-10s %7.3f s         Embree %7.3f   ratio %.2f\n", "build", median(build), median(build_peer),
-              median(ratios));
+                     {"bytes_per_splat", bytes},
+                     {"hit_share", hit_share}};
+  row["coherent"] = report_rays("coherent", coherent_pairs, coherent.size());
+  row["incoherent"] = report_rays("incoherent", closest, bounced.size());
+  row["any-hit"] = report_rays("any-hit", any, bounced.size());
+  const double share = 1.0 / build.ratio();
+  row["build"] = {{"seconds", median(build.ours)}, {"embree_seconds", median(build.theirs)}, {"ratio", share}};
+  std::printf("  %-10s %7.3f s         Embree %7.3f   ratio %.2f\n", "build", median(build.ours), median(build.theirs),
+              share);
+  std::fflush(stdout);
   return row;
+}
+
+/// The blob from close by, looking down on it: it and the floor fill the picture, a strip of sky stays.
+Scene blob_view() {
+  Scene scene;
+  scene.up = UpAxis::z;
+  scene.camera.position = {0.0, -4.5, 1.0};
+  scene.camera.look_at = {0.0, 0.0, -0.125};
+  scene.camera.fov_deg = 47.2;
+  scene.camera.chosen = true;
+  return scene;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Rays through the octree against Embree"};
-  std::string json_file, form_name = "auto";
+  std::string json_file, form_name = "auto", clock_name = "wall";
   std::vector<std::size_t> sizes;
   std::vector<std::string> clouds;
   int pairs = 5;
@@ -164,12 +251,18 @@ int main(int argc, char** argv) {
   app.add_option("--splats", sizes, "sizes of the synthetic blob")->delimiter(',');
   app.add_option("--pairs", pairs, "measurements of each side")->check(CLI::Range(1, 1000));
   app.add_option("--form", form_name, "auto, step or wide")->check(CLI::IsMember({"auto", "step", "wide"}));
+  app.add_option("--clock", clock_name, "wall, or cpu: seconds computed by all threads")
+      ->check(CLI::IsMember({"wall", "cpu"}));
   app.add_option("CLOUD.ply", clouds, "scans to measure");
   CLI11_PARSE(app, argc, argv);
   if (sizes.empty() && clouds.empty()) sizes = {50'000, 500'000, 2'000'000};
-  const TraversalForm form = form_name == "step"   ? TraversalForm::step
-                             : form_name == "wide" ? TraversalForm::wide
-                                                   : TraversalForm::automatic;
+  const auto with_form = [&](Scene scene) {
+    scene.traversal.form = form_name == "step"   ? TraversalForm::step
+                           : form_name == "wide" ? TraversalForm::wide
+                                                 : TraversalForm::automatic;
+    return scene;
+  };
+  clock_id = clock_name == "cpu" ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
   spdlog::set_level(spdlog::level::warn);
   try {
     Session session(choose_device(""));
@@ -179,13 +272,18 @@ int main(int argc, char** argv) {
       WorldSplats world;
       world.cloud = synthetic_blob(n);
       world.material.assign(world.cloud.size(), 0);
-      rows.push_back(measure(session, "blob", world, form, pairs));
+      rows.push_back(measure(session, "blob", world, with_form(blob_view()), pairs));
     }
+    const Scene default_view;
     for (const std::string& cloud : clouds)
-      rows.push_back(measure(session, cloud, load_splats(load_bare_cloud(cloud)), form, pairs));
+      rows.push_back(measure(session, cloud, load_splats(load_bare_cloud(cloud)), with_form(default_view), pairs));
     if (!json_file.empty())
-      std::ofstream(json_file)
-          << nlohmann::json{{"device", session.info().name}, {"pairs", pairs}, {"rows", rows}}.dump(1) << "\n";
+      std::ofstream(json_file) << nlohmann::json{{"device", session.info().name},
+                                                 {"clock", clock_name},
+                                                 {"pairs", pairs},
+                                                 {"rows", rows}}
+                                      .dump(1)
+                               << "\n";
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return 1;

@@ -37,6 +37,10 @@ TEST_CASE("device and host lay the shared structs out alike") {
       sizeof(Material),
       sizeof(RayQuery),
       sizeof(RayAnswer),
+      sizeof(RayPacketQuery),
+      offsetof(RayPacketQuery, t_max),
+      sizeof(RayPacketAnswer),
+      sizeof(EyeHits),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_layout");

@@ -183,7 +183,7 @@ TEST_CASE("dumped kernels hold what the scene needs and no more") {
   REQUIRE(
       run_program("render " + scene + " -o " + folder.file("x.exr") + " --dump-kernels " + folder.file("dump")).code ==
       0);
-  std::ifstream file(folder.file("dump/render_render_packets.cl"));
+  std::ifstream file(folder.file("dump/render_shade.cl"));
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string options = text.substr(0, text.find('\n'));
   CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT"));

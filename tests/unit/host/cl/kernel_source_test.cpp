@@ -19,16 +19,16 @@ std::size_t count(const std::string& text, const std::string& part) {
 } // namespace
 
 TEST_CASE("a kernel source holds each included file once, with markers and no #include left") {
-  const std::string source = kernel_source("render/render.cl");
+  const std::string source = kernel_source("render/shade.cl");
   CHECK(count(source, "#include \"") == 0);
   CHECK(count(source, "inline float dot3(") == 1);
   CHECK(count(source, "#line 1 \"kernels/lib/vector.cl\"") == 1);
-  CHECK(source.rfind("#line 1 \"kernels/render/render.cl\"", 0) == 0);
+  CHECK(source.rfind("#line 1 \"kernels/render/shade.cl\"", 0) == 0);
 }
 
 TEST_CASE("markers count the lines of our files") {
   // Behind each marker, the named line of the named file must follow.
-  const std::string source = kernel_source("render/render.cl");
+  const std::string source = kernel_source("render/shade.cl");
   const std::string marker = "#line ";
   int checked = 0;
   for (std::size_t at = source.find(marker); at != std::string::npos; at = source.find(marker, at + 1)) {

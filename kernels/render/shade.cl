@@ -1,0 +1,49 @@
+/* The picture from the hits of its eye rays (kernels/render/eye_rays.cl): a pixel's 32 rays are one work-group, shaded
+ * together (method.md section 6).
+ * NDRange: (GRID_X * columns, GRID_Y * rows), local (GRID_X, GRID_Y); the group at (i, j) shades the image's pixel
+ * (first_x + i, first_y + j) from hits[j * columns + i] into film[(j * columns + i) * FILM_CHANNELS ...]. A launch takes
+ * samples first_sample to first_sample + 31 of those a pixel has, and adds to the film unless first_sample is 0; of fewer
+ * the rest of the group rests. Results do not depend on how an image is cut into launches. */
+#include "render/eye_sample.cl"
+
+__kernel __attribute__((reqd_work_group_size(GRID_X, GRID_Y, 1)))
+void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
+                  const __global DeltaLight* delta_lights, const __global Emitter* emitters,
+                  const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint first_sample) {
+  __local float group_sums[FILM_SUMS][GRID_RAYS];
+  __local uint group_points[GRID_RAYS];
+  const uint lane = get_local_id(1) * GRID_X + get_local_id(0);
+  const size_t at = get_group_id(1) * (size_t)get_num_groups(0) + get_group_id(0);
+  const Lights lights = {params, materials, delta_lights, emitters};
+  const SampleId id = {(uint2)(first_x + get_group_id(0), first_y + get_group_id(1)), first_sample + lane, params->seed};
+  float sums[FILM_SUMS];
+  for (int c = 0; c < FILM_SUMS; ++c)
+    sums[c] = 0.0f;
+  uint point = FILM_NO_POINT;
+  if (id.sample < params->samples) {
+    Ray ray;
+    float t_start;
+    sample_ray(params, id, &ray, &t_start);
+    const Hit hit = {hits[at].t[lane], hits[at].splat[lane]};
+    point = add_sample(POOL_ARGS, lights, id, ray, t_start, hit, sums);
+  }
+  for (int c = 0; c < FILM_SUMS; ++c)
+    group_sums[c][lane] = sums[c];
+  group_points[lane] = point;
+  barrier(CLK_LOCAL_MEM_FENCE);
+
+  /* One work-item a channel adds the 32 up, in one order on every device. */
+  __global float* pixel = film + FILM_CHANNELS * at;
+  if (lane < FILM_SUMS) {
+    float sum = 0.0f;
+    for (int i = 0; i < GRID_RAYS; ++i)
+      sum += group_sums[lane][i];
+    pixel[lane] = first_sample == 0u ? sum : pixel[lane] + sum;
+  } else if (lane == FILM_SUMS) {
+    uint first = FILM_NO_POINT;
+    for (int i = GRID_RAYS - 1; i >= 0; --i)
+      first = group_points[i] != FILM_NO_POINT ? group_points[i] : first;
+    if (first_sample == 0u || as_uint(pixel[FILM_POINT]) == FILM_NO_POINT)
+      pixel[FILM_POINT] = as_float(first);
+  }
+}
