@@ -2,17 +2,6 @@
 
 namespace pointgi {
 
-CellCoordinates cell_of(const float position[3]) {
-  constexpr float cells = static_cast<float>(1u << MAX_AXIS_BITS);
-  CellCoordinates cell{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const float scaled = position[axis] * cells;
-    // Written so that NaN lands in cell 0 instead of undefined behaviour.
-    cell[axis] = scaled >= cells ? (1u << MAX_AXIS_BITS) - 1u : scaled > 0.0f ? static_cast<std::uint32_t>(scaled) : 0u;
-  }
-  return cell;
-}
-
 std::uint64_t cell_key(CellCoordinates cell, unsigned axis_bits) {
   const unsigned levels = key_levels(axis_bits);
   const unsigned unused = MAX_AXIS_BITS - levels * axis_bits; // N = 4: 21 bits are ten digits and one bit over

@@ -20,8 +20,10 @@ struct Other {
 
 /// Nearest hits through the octree; `splat` is the index into `splats`.
 std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
-                                  const TraversalVariant& variant, Other* other = nullptr) {
+                                  const TraversalVariant& variant, Other* other = nullptr,
+                                  PointOrder order = PointOrder::morton) {
   TreeOptions options{variant.axis_bits, 8, 21 / variant.axis_bits};
+  options.order = order;
   options.listing = variant.form == TraversalForm::wide ? Listing::centres : Listing::overlaps;
   const Tree tree = build_tree(splats, options);
   const OctreePools pools = variant.form == TraversalForm::wide ? OctreePools(pack_wide(splats, tree, variant.lanes))
@@ -103,6 +105,14 @@ TEST_CASE("a million hard rays find the splat that a linear scan finds, in every
     variant.lanes = lanes;
     CHECK(differences(trace_tree(splats, rays, variant), truth) == 0);
   }
+}
+
+TEST_CASE("the order of the points in memory does not change what rays find") {
+  TraversalVariant variant;
+  variant.form = GENERATE(TraversalForm::step, TraversalForm::wide);
+  const auto splats = mixed_splats();
+  const auto rays = hard_rays(splats, 100'000, 13);
+  CHECK(differences(trace_tree(splats, rays, variant, nullptr, PointOrder::hilbert), trace_all(splats, rays)) == 0);
 }
 
 TEST_CASE("the device's linear scan agrees with the host's in double precision") {
