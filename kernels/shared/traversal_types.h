@@ -18,7 +18,8 @@ typedef struct RayAnswer {
 } RayAnswer;
 
 /* Rays of one origin that are traced together: 2 x 2 pixels of 8 x 4 rays, pixel after pixel, a component of all rays
- * side by side. Any other rays of one origin will do; those of a pixel, and of half a pixel, should run close together. */
+ * side by side. Any other rays of one origin will do; those of a pixel, and of half a pixel, should run close together.
+ */
 #define PACKET_COLUMNS 2
 #define PACKET_ROWS 2
 #define PACKET_RAYS (32 * PACKET_COLUMNS * PACKET_ROWS)
