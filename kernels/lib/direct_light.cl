@@ -27,94 +27,136 @@ static inline uint pick(const __global float* cumulative, uint stride, uint coun
   return low;
 }
 
-/* One shadow ray from the surface towards `direction` (unit), over `distance`; counts itself. */
-static inline bool in_light(POOL_PARAMS, const Surface* s, float3 direction, float distance, float3 target_normal,
-                     float target_radius, float step_delta, float* rays) {
+/* A place or direction from which light may come, and what it adds to the irradiance when nothing is in between. */
+typedef struct LightSample {
+  float3 towards; /* unit */
+  float distance;
+  float3 irradiance;
+  float3 normal; /* of the emitting disc; 0 where the light is none, as its radius */
+  float radius;
+} LightSample;
+
+/* Whether nothing stands between the surface and the light; counts its ray. */
+static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* light, float step_delta, float* rays) {
   Ray ray;
   ray.origin = s->position;
-  ray.direction = direction;
+  ray.direction = light->towards;
   /* A little behind the surface: where two walls meet, rounding may put the point a few float steps beyond the other
    * wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
   ray.t_min = -4e-6f;
-  ray.t_max = distance;
+  ray.t_max = light->distance;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
 #endif
-  const ShadowEnds ends = {s->normal, target_normal, s->radius, target_radius};
+  const ShadowEnds ends = {s->normal, light->normal, s->radius, light->radius};
   *rays += 1.0f;
   return !trace_any(POOL_ARGS, ray, ends);
 }
 
+/* The samplers below return false when the light does not reach the surface's front whatever stands between. */
+
 #ifdef HAS_DELTA_LIGHTS
-/* Irradiance of one point light, I cos / d^2, or directional light, E cos. */
-static inline float3 irradiance_of_delta_light(POOL_PARAMS, const Surface* s, const __global DeltaLight* light,
-                                        float step_delta, float* rays) {
+/* Irradiance of one point light, I cos / d^2, or directional light, E cos. Of more than ALL_DELTA_LIGHTS one is drawn,
+ * else it is number i. */
+static inline bool sample_delta_light(const Surface* s, Lights lights, float4 u, uint i, LightSample* sample) {
+  const uint count = lights.params->delta_lights;
+  float share = 1.0f;
+  if (count > ALL_DELTA_LIGHTS) {
+    i = pick(&lights.delta->cumulative, sizeof(DeltaLight) / sizeof(float), count, u.x);
+    share = lights.delta[i].cumulative - (i > 0u ? lights.delta[i - 1u].cumulative : 0.0f);
+  }
+  const __global DeltaLight* light = lights.delta + i;
   float3 towards = load3(light->vector);
-  float distance = INFINITY, falloff = 1.0f;
+  float falloff = 1.0f;
+  sample->distance = INFINITY;
   if (light->type == LIGHT_POINT) {
     towards -= s->position;
     /* A light on the surface itself: finite, and nobody can say which side it is on. */
     const float d2 = fmax(dot3(towards, towards), 1e-12f);
-    distance = sqrt(d2);
-    towards /= distance;
+    sample->distance = sqrt(d2);
+    towards /= sample->distance;
     falloff = 1.0f / d2;
   }
   const float cosine = dot3(s->normal, towards);
-  if (cosine <= 0.0f || !in_light(POOL_ARGS, s, towards, distance, (float3)(0.0f), 0.0f, step_delta, rays))
-    return (float3)(0.0f);
-  return load3(light->strength) * (cosine * falloff);
+  sample->towards = towards;
+  sample->irradiance = load3(light->strength) * (cosine * falloff) / share;
+  sample->normal = (float3)(0.0f);
+  sample->radius = 0.0f;
+  return cosine > 0.0f;
+}
+#endif
+
+#ifdef HAS_EMITTERS
+/* One emitting splat in proportion to its power, one point on the disc of its effective area: H = L A cos cos' / (d^2 p). */
+static inline bool sample_emitter(POOL_PARAMS, const Surface* s, Lights lights, float4 u, LightSample* sample) {
+  const uint i = pick(&lights.emitters->cumulative, sizeof(Emitter) / sizeof(float), lights.params->emitters, u.x);
+  const float share = lights.emitters[i].cumulative - (i > 0u ? lights.emitters[i - 1u].cumulative : 0.0f);
+  const uint point = lights.emitters[i].point;
+  const float4 centre = pool_point_texel(POINT_TEXELS * point);
+  const float4 normal = pool_point_texel(POINT_TEXELS * point + 1u);
+  const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
+  float3 a, b;
+  tangents(normal.xyz, &a, &b);
+  const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
+  float3 towards = centre.xyz + r * cos(phi) * a + r * sin(phi) * b - s->position;
+  /* Not nearer than a tenth of the disc: the estimate of a light that touches the surface stays finite. */
+  const float d2 = fmax(dot3(towards, towards), 0.01f * area);
+  sample->distance = sqrt(d2);
+  towards /= sample->distance;
+  const float cosine = dot3(s->normal, towards), cosine_at_light = -dot3(normal.xyz, towards);
+  sample->towards = towards;
+  sample->irradiance =
+      load3(lights.materials[(uint)normal.w].emission) * (area * cosine * cosine_at_light / (d2 * share));
+  sample->normal = normal.xyz;
+  sample->radius = centre.w;
+  return share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f;
+}
+#endif
+
+#ifdef HAS_ENVIRONMENT
+static inline bool sample_environment(const Surface* s, Lights lights, float4 u, LightSample* sample) {
+  sample->towards = cosine_direction(s->normal, u.x, u.y);
+  sample->distance = INFINITY;
+  sample->irradiance = load3_constant(lights.params->environment) * 3.14159265f; /* cos / (cos/pi) */
+  sample->normal = (float3)(0.0f);
+  sample->radius = 0.0f;
+  return true;
 }
 #endif
 
 /* Irradiance H [W/m2, scaled] of the surface from all lights, one estimate; the mean over samples converges to it.
- * Adds the number of shadow rays traced to *rays. */
+ * Adds the number of shadow rays traced to *rays. One place traces them all: the walk stands once in the code, and
+ * work-items that shade different lights walk together. */
 static inline float3 direct_irradiance(POOL_PARAMS, const Surface* s, Lights lights, SampleId id, float* rays) {
   float3 sum = (float3)(0.0f);
-  const float step_delta = lights.params->step_delta;
+  uint delta_samples = 0u, emitter_samples = 0u, environment_samples = 0u;
 #ifdef HAS_DELTA_LIGHTS
-  const uint count = lights.params->delta_lights;
-  if (count <= ALL_DELTA_LIGHTS) {
-    for (uint i = 0u; i < count; ++i)
-      sum += irradiance_of_delta_light(POOL_ARGS, s, lights.delta + i, step_delta, rays);
-  } else {
-    const float u = stratified4(id, 1u).x;
-    const uint i = pick(&lights.delta->cumulative, sizeof(DeltaLight) / sizeof(float), count, u);
-    const float share = lights.delta[i].cumulative - (i > 0u ? lights.delta[i - 1u].cumulative : 0.0f);
-    sum += irradiance_of_delta_light(POOL_ARGS, s, lights.delta + i, step_delta, rays) / share;
-  }
+  delta_samples = lights.params->delta_lights <= ALL_DELTA_LIGHTS ? lights.params->delta_lights : 1u;
 #endif
 #ifdef HAS_EMITTERS
-  {
-    /* One emitting splat in proportion to its power, one point on the disc of its effective area:
-     * H = L A cos cos' / (d^2 p). */
-    const float4 u = stratified4(id, 2u);
-    const uint i = pick(&lights.emitters->cumulative, sizeof(Emitter) / sizeof(float), lights.params->emitters, u.x);
-    const float share = lights.emitters[i].cumulative - (i > 0u ? lights.emitters[i - 1u].cumulative : 0.0f);
-    const uint point = lights.emitters[i].point;
-    const float4 centre = pool_point_texel(POINT_TEXELS * point);
-    const float4 normal = pool_point_texel(POINT_TEXELS * point + 1u);
-    const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
-    float3 a, b;
-    tangents(normal.xyz, &a, &b);
-    const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
-    float3 towards = centre.xyz + r * cos(phi) * a + r * sin(phi) * b - s->position;
-    /* Not nearer than a tenth of the disc: the estimate of a light that touches the surface stays finite. */
-    const float d2 = fmax(dot3(towards, towards), 0.01f * area);
-    const float distance = sqrt(d2);
-    towards /= distance;
-    const float cosine = dot3(s->normal, towards), cosine_at_light = -dot3(normal.xyz, towards);
-    if (share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f &&
-        in_light(POOL_ARGS, s, towards, distance, normal.xyz, centre.w, step_delta, rays))
-      sum += load3(lights.materials[(uint)normal.w].emission) * (area * cosine * cosine_at_light / (d2 * share));
-  }
+  emitter_samples = 1u;
 #endif
 #ifdef HAS_ENVIRONMENT
-  {
-    const float4 u = stratified4(id, 3u);
-    const float3 towards = cosine_direction(s->normal, u.x, u.y);
-    if (in_light(POOL_ARGS, s, towards, INFINITY, (float3)(0.0f), 0.0f, step_delta, rays))
-      sum += load3_constant(lights.params->environment) * 3.14159265f; /* cos / (cos/pi) */
-  }
+  environment_samples = 1u;
 #endif
+  for (uint i = 0u; i < delta_samples + emitter_samples + environment_samples; ++i) {
+    const float4 u = stratified4(id, i < delta_samples ? 1u : i < delta_samples + emitter_samples ? 2u : 3u);
+    LightSample light;
+    bool faces = false;
+#ifdef HAS_DELTA_LIGHTS
+    if (i < delta_samples)
+      faces = sample_delta_light(s, lights, u, i, &light);
+#endif
+#ifdef HAS_EMITTERS
+    if (i == delta_samples)
+      faces = sample_emitter(POOL_ARGS, s, lights, u, &light);
+#endif
+#ifdef HAS_ENVIRONMENT
+    if (i == delta_samples + emitter_samples)
+      faces = sample_environment(s, lights, u, &light);
+#endif
+    if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays))
+      sum += light.irradiance;
+  }
   return sum;
 }

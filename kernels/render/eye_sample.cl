@@ -7,39 +7,39 @@
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   Surface s;
-  sums[FILM_RAYS] += 1.0f;
-  if (!blended_surface(POOL_ARGS, ray, hit, &s, &sums[FILM_RAYS])) {
-    sums[FILM_DIRECT] += lights.params->environment[0];
-    sums[FILM_DIRECT + 1] += lights.params->environment[1];
-    sums[FILM_DIRECT + 2] += lights.params->environment[2];
-    return FILM_NO_POINT;
-  }
-  sums[FILM_COVERAGE] += 1.0f;
-  sums[FILM_ALBEDO] += s.albedo.x;
-  sums[FILM_ALBEDO + 1] += s.albedo.y;
-  sums[FILM_ALBEDO + 2] += s.albedo.z;
-  __constant Camera* camera = &lights.params->camera;
-  const float3 axis = cross(load3_constant(camera->step_y), load3_constant(camera->step_x));
-  sums[FILM_DEPTH] += (t_start + s.t) * fabs(dot3(normalize3(axis), ray.direction));
-  sums[FILM_NORMAL] += s.normal.x;
-  sums[FILM_NORMAL + 1] += s.normal.y;
-  sums[FILM_NORMAL + 2] += s.normal.z;
-  sums[FILM_POSITION] += s.position.x;
-  sums[FILM_POSITION + 1] += s.position.y;
-  sums[FILM_POSITION + 2] += s.position.z;
-  if (!s.front) {
-    sums[FILM_BACK_FACE] += 1.0f;
-    return s.splat;
-  }
+  uint point = FILM_NO_POINT;
   float3 radiance = (float3)(0.0f);
+  sums[FILM_RAYS] += 1.0f;
+  if (blended_surface(POOL_ARGS, ray, hit, &s, &sums[FILM_RAYS])) {
+    point = s.splat;
+    sums[FILM_COVERAGE] += 1.0f;
+    sums[FILM_ALBEDO] += s.albedo.x;
+    sums[FILM_ALBEDO + 1] += s.albedo.y;
+    sums[FILM_ALBEDO + 2] += s.albedo.z;
+    __constant Camera* camera = &lights.params->camera;
+    const float3 axis = cross(load3_constant(camera->step_y), load3_constant(camera->step_x));
+    sums[FILM_DEPTH] += (t_start + s.t) * fabs(dot3(normalize3(axis), ray.direction));
+    sums[FILM_NORMAL] += s.normal.x;
+    sums[FILM_NORMAL + 1] += s.normal.y;
+    sums[FILM_NORMAL + 2] += s.normal.z;
+    sums[FILM_POSITION] += s.position.x;
+    sums[FILM_POSITION + 1] += s.position.y;
+    sums[FILM_POSITION + 2] += s.position.z;
+    sums[FILM_BACK_FACE] += s.front ? 0.0f : 1.0f;
+    if (s.front) {
 #if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
-  radiance = s.albedo * 0.31830989f * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
+      radiance = s.albedo * 0.31830989f * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
 #endif
 #ifdef HAS_EMITTERS
-  radiance += load3(lights.materials[s.material].emission);
+      radiance += load3(lights.materials[s.material].emission);
 #endif
+    }
+  } else {
+    radiance = load3_constant(lights.params->environment);
+  }
+  /* Added in one place: from several, compilers make an address of it, and the sums stand in memory. */
   sums[FILM_DIRECT] += radiance.x;
   sums[FILM_DIRECT + 1] += radiance.y;
   sums[FILM_DIRECT + 2] += radiance.z;
-  return s.splat;
+  return point;
 }
