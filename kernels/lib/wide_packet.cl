@@ -201,8 +201,7 @@ static inline void trace_packet(POOL_PARAMS, const RayPacket* p, PacketHits* bes
   }
   const PacketBounds bounds = packet_bounds(p);
   float farthest = p->t_max;
-  WideWalk walk;
-  walk_from_root(&walk);
+  WALK_FROM_ROOT(walk);
   while (walk.count > 0) {
     walk.count -= 1;
     if (walk.t_enter[walk.count] > farthest)

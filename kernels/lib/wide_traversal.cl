@@ -35,10 +35,16 @@ static inline float smallest8(float8 v) {
   return min(min(a.x, a.y), min(a.z, a.w));
 }
 
-/* Byte k is 1 where lane k of a comparison is true. */
+/* any() is compiled to a branch a lane by some. Byte k is 1 where lane k of a comparison is true. */
 static inline ulong byte_a_lane(int8 comparison) {
   return as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
 }
+
+#if WIDE_LANES == 16
+static inline bool any_lane(lanes_i v) { return byte_a_lane(v.lo | v.hi) != 0ul; }
+#else
+static inline bool any_lane(lanes_i v) { return byte_a_lane(v) != 0ul; }
+#endif
 
 /* Index of the lowest byte that is not zero. */
 static inline uint lowest_byte(ulong bytes) { return (uint)popcount((bytes & (0ul - bytes)) - 1ul) >> 3; }
@@ -95,12 +101,21 @@ static inline ulong children_met(const __global WideNode* node, WideRay ray, flo
   return mirrored(byte_a_lane(t0 <= t1), ray.octant);
 }
 
-/* Nodes and leaves that wait, with the t at which the ray enters them. */
+/* Nodes and leaves that wait, with the t at which the ray enters them. The arrays stand apart, so that the count is kept
+ * in a register. */
 typedef struct WideWalk {
-  uint waiting[WIDE_STACK];
-  float t_enter[WIDE_STACK];
+  uint* waiting;
+  float* t_enter;
   int count;
 } WideWalk;
+
+/* Declares the walk `name`, in which the root waits. */
+#define WALK_FROM_ROOT(name)         \
+  uint name##_waiting[WIDE_STACK];   \
+  float name##_t_enter[WIDE_STACK];  \
+  name##_waiting[0] = 0u;            \
+  name##_t_enter[0] = -INFINITY;     \
+  WideWalk name = {name##_waiting, name##_t_enter, 1}
 
 /* Puts the children met (in the ray's order) to wait, farthest first, so that the nearest is taken next. */
 static inline void push_children(WideWalk* walk, const __global WideNode* node, ulong met, float8 t_enter, uint octant) {
@@ -131,12 +146,6 @@ static inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWa
     push_children(walk, node, met, t_enter, ray.octant);
   }
   return 0u;
-}
-
-static inline void walk_from_root(WideWalk* walk) {
-  walk->waiting[0] = 0u;
-  walk->t_enter[0] = -INFINITY;
-  walk->count = 1;
 }
 
 /* One block of splats against the ray: ray_disc in lanes, to the same bits. */
@@ -178,15 +187,14 @@ static inline BlockHits hit_block(const __global float* block, float3 origin, fl
 static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   Hit best = {ray.t_max, NO_SPLAT};
   const WideRay wide = wide_ray(ray);
-  WideWalk walk;
-  walk_from_root(&walk);
+  WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_u index = h.first + LANE_NUMBERS;
       const lanes_i nearer = h.inside & (h.t > ray.t_min) &
                              ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
-      if (any(nearer)) {
+      if (any_lane(nearer)) {
         const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
         best.t = smallest_lane(t);
         best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
@@ -199,13 +207,12 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
 static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   const WideRay wide = wide_ray(ray);
-  WideWalk walk;
-  walk_from_root(&walk);
+  WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
-      if (any(hit)) { /* belongs_to_ends in lanes */
+      if (any_lane(hit)) { /* belongs_to_ends in lanes */
         const lanes_f facing_origin = fma(h.nx, (lanes_f)(ends.origin_normal.x),
                                           fma(h.ny, (lanes_f)(ends.origin_normal.y), h.nz * ends.origin_normal.z));
         const lanes_f facing_target = fma(h.nx, (lanes_f)(ends.target_normal.x),
@@ -217,7 +224,7 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
         const lanes_i at_target =
             ((before < SELF_HIT_REACH * (ends.target_radius + h.radius)) & (facing_target > SELF_HIT_COSINE)) |
             ((before < COINCIDENT) & (facing_target < -SELF_HIT_COSINE));
-        if (any(hit & ~at_origin & ~at_target))
+        if (any_lane(hit & ~at_origin & ~at_target))
           return true;
       }
     })
@@ -228,14 +235,13 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 /* Adds all discs but the first that are hit in the blend's window. */
 static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   const WideRay wide = wide_ray(ray);
-  WideWalk walk;
-  walk_from_root(&walk);
+  WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i counts = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
                              as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
-      if (any(counts)) {
+      if (any_lane(counts)) {
         float t_of[WIDE_LANES];
         float q_of[WIDE_LANES];
         store_lanes(select((lanes_f)(-INFINITY), h.t, counts), t_of);

@@ -1,5 +1,6 @@
 /// Rays through the octree against Embree over the same splats, rays and threads, A B A B, medians of the pairs.
-///   bench_traversal [--json FILE] [--splats N,…] [--pairs K] [--form step|wide] [--clock wall|cpu] [CLOUD.ply …]
+///   bench_traversal [--json FILE] [--markdown FILE] [--splats N,…] [--pairs K] [--form step|wide] [--clock wall|cpu]
+///                   [CLOUD.ply …]
 #include "host/app/default_view.h"
 #include "host/app/prepare.h"
 #include "host/passes/device_pools.h"
@@ -12,6 +13,7 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -228,6 +230,30 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
   return row;
 }
 
+/// The rows as a table for the README: ours, Embree's, and how many times as fast ours is.
+std::string markdown_of(const nlohmann::json& rows) {
+  std::string text =
+      "| splats | eye rays | bounced rays | any hit | build | bytes a splat |\n|---|---|---|---|---|---|\n";
+  char cell[200];
+  for (const auto& row : rows) {
+    std::snprintf(cell, sizeof cell, "| %s, %.0fk |", row["name"].get<std::string>().c_str(),
+                  1e-3 * row["splats"].get<double>());
+    text += cell;
+    for (const char* kind : {"coherent", "incoherent", "any-hit"}) {
+      const auto& k = row[kind];
+      std::snprintf(cell, sizeof cell, " %.1f against %.1f: **%.1f x** |", k["mrays_per_s"].get<double>(),
+                    k["embree_mrays_per_s"].get<double>(), k["ratio"].get<double>());
+      text += cell;
+    }
+    const auto& build = row["build"];
+    std::snprintf(cell, sizeof cell, " %.3f s against %.3f: **%.2f of the time** | %.0f |\n",
+                  build["seconds"].get<double>(), build["embree_seconds"].get<double>(), build["ratio"].get<double>(),
+                  row["bytes_per_splat"].get<double>());
+    text += cell;
+  }
+  return text;
+}
+
 /// The blob from close by, looking down on it: it and the floor fill the picture, a strip of sky stays.
 Scene blob_view() {
   Scene scene;
@@ -243,11 +269,12 @@ Scene blob_view() {
 
 int main(int argc, char** argv) {
   CLI::App app{"Rays through the octree against Embree"};
-  std::string json_file, form_name = "auto", clock_name = "wall";
+  std::string json_file, markdown_file, form_name = "auto", clock_name = "wall";
   std::vector<std::size_t> sizes;
   std::vector<std::string> clouds;
   int pairs = 5;
   app.add_option("--json", json_file, "write the figures to this file");
+  app.add_option("--markdown", markdown_file, "write them to this file as a table, Mrays/s ours against Embree's");
   app.add_option("--splats", sizes, "sizes of the synthetic blob")->delimiter(',');
   app.add_option("--pairs", pairs, "measurements of each side")->check(CLI::Range(1, 1000));
   app.add_option("--form", form_name, "auto, step or wide")->check(CLI::IsMember({"auto", "step", "wide"}));
@@ -276,7 +303,8 @@ int main(int argc, char** argv) {
     }
     const Scene default_view;
     for (const std::string& cloud : clouds)
-      rows.push_back(measure(session, cloud, load_splats(load_bare_cloud(cloud)), with_form(default_view), pairs));
+      rows.push_back(measure(session, std::filesystem::path(cloud).stem().string(), load_splats(load_bare_cloud(cloud)),
+                             with_form(default_view), pairs));
     if (!json_file.empty())
       std::ofstream(json_file) << nlohmann::json{{"device", session.info().name},
                                                  {"clock", clock_name},
@@ -284,6 +312,7 @@ int main(int argc, char** argv) {
                                                  {"rows", rows}}
                                       .dump(1)
                                << "\n";
+    if (!markdown_file.empty()) std::ofstream(markdown_file) << markdown_of(rows);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return 1;
