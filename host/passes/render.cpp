@@ -1,4 +1,5 @@
 #include "host/passes/render.h"
+#include "host/passes/tile_renderer.h"
 #include <algorithm>
 #include <cstring>
 
@@ -80,54 +81,6 @@ std::vector<ChannelName> film_channels() {
 
 namespace {
 
-/// The render kernel with all of its arguments but the tile's place.
-class TileRenderer {
-public:
-  TileRenderer(Session& session, const DevicePools& pools, const RenderRequest& request)
-      : session_(session), pools_(pools), params_(request.lighting.params) {
-    const DeviceLighting& lighting = request.lighting;
-    params_.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
-    const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-    group_a_pixel_ = request.variant.form == TraversalForm::step;
-    kernel_ =
-        session.kernel(render_kernel_file(request.variant), build_options(request.variant, features), "render_pixels");
-    device_params_ = session.upload(&params_, 1);
-    materials_ = session.upload(lighting.materials);
-    delta_ = session.upload(lighting.delta);
-    emitters_ = session.upload(lighting.emitters);
-  }
-
-  pg_uint samples() const { return params_.samples; }
-
-  /// One pass of up to 32 samples over a tile; returns the device's seconds.
-  double launch(int x, int y, int columns, int rows, pg_uint first_sample) {
-    const std::size_t size = static_cast<std::size_t>(columns) * rows * FILM_CHANNELS;
-    if (film_.size < size) film_ = session_.allocate<float>(size);
-    const auto x_items = static_cast<std::size_t>(columns), y_items = static_cast<std::size_t>(rows);
-    const LaunchShape shape = group_a_pixel_ ? LaunchShape{{x_items * GRID_X, y_items * GRID_Y}, {GRID_X, GRID_Y}}
-                                             : LaunchShape{{x_items, y_items}, {1, 1}};
-    return session_.launch(kernel_, shape, pools_.nodes, pools_.leaves, pools_.points, device_params_, materials_,
-                           delta_, emitters_, film_, static_cast<cl_uint>(x), static_cast<cl_uint>(y),
-                           static_cast<cl_uint>(first_sample));
-  }
-
-  std::vector<float> film(int columns, int rows) {
-    return session_.download(film_, static_cast<std::size_t>(columns) * rows * FILM_CHANNELS);
-  }
-
-private:
-  Session& session_;
-  const DevicePools& pools_;
-  RenderParams params_;
-  bool group_a_pixel_ = true;
-  cl::Kernel kernel_;
-  Buffer<RenderParams> device_params_;
-  Buffer<Material> materials_;
-  Buffer<DeltaLight> delta_;
-  Buffer<Emitter> emitters_;
-  Buffer<float> film_;
-};
-
 /// A finished tile into its band and the totals.
 void resolve_tile(const std::vector<float>& film, int column, int columns, const RenderRequest& request,
                   pg_uint samples, Band& band, RenderTotals& totals) {
@@ -148,7 +101,7 @@ void resolve_tile(const std::vector<float>& film, int column, int columns, const
 RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
-  TileRenderer tiles(session, pools, request);
+  TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant);
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;

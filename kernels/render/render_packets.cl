@@ -1,8 +1,8 @@
 /* The picture, a pixel a work-item: its 32 eye rays are traced together as one packet (kernels/lib/wide_packet.cl), then
  * shaded one by one. For devices whose work-items have vector registers of their own; the sums are those of
  * kernels/render/render.cl, added in the same order.
- * NDRange: (columns, rows); the work-item at (i, j) renders the image's pixel (first_x + i, first_y + j) into
- * film[(j * columns + i) * FILM_CHANNELS ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel
+ * NDRange: (columns, rows), padded to whole groups of any shape; the work-item at (i, j) renders the image's pixel
+ * (first_x + i, first_y + j) into film[(j * columns + i) * FILM_CHANNELS ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel
  * has, and adds to the film unless first_sample is 0. */
 #include "lib/traversal.cl"
 #include "lib/wide_packet.cl"
@@ -13,7 +13,9 @@
 
 __kernel void render_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
                             const __global DeltaLight* delta_lights, const __global Emitter* emitters,
-                            __global float* film, uint first_x, uint first_y, uint first_sample) {
+                            __global float* film, uint first_x, uint first_y, uint columns, uint rows, uint first_sample) {
+  if (get_global_id(0) >= columns || get_global_id(1) >= rows)
+    return;
   const Lights lights = {params, materials, delta_lights, emitters};
   SampleId id;
   id.pixel = (uint2)(first_x + get_global_id(0), first_y + get_global_id(1));
@@ -63,7 +65,7 @@ __kernel void render_pixels(POOL_PARAMS, __constant RenderParams* params, const 
     }
     point = point == FILM_NO_POINT ? found : point;
   }
-  __global float* pixel = film + FILM_CHANNELS * (get_global_id(1) * (size_t)get_global_size(0) + get_global_id(0));
+  __global float* pixel = film + FILM_CHANNELS * (get_global_id(1) * (size_t)columns + get_global_id(0));
   for (int c = 0; c < FILM_SUMS; ++c)
     pixel[c] = first_sample == 0u ? sums[c] : pixel[c] + sums[c];
   if (first_sample == 0u || as_uint(pixel[FILM_POINT]) == FILM_NO_POINT)

@@ -2,7 +2,9 @@
 ///   bench_traversal [--json FILE] [--splats N,…] [--pairs K] [--form step|wide] [CLOUD.ply …]
 #include "host/app/default_view.h"
 #include "host/app/prepare.h"
+#include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
+#include "host/passes/tuned.h"
 #include "host/scene/lighting.h"
 #include "tests/bench/embree_peer.h"
 #include "tests/bench/synthetic_blob.h"
@@ -92,23 +94,23 @@ struct Tracer {
   }
 };
 
-nlohmann::json measure(Session& session, const std::string& name, const WorldSplats& world, TraversalForm form,
-                       int pairs) {
+nlohmann::json measure(Session& session, const std::string& name, const WorldSplats& world,
+                       std::optional<TraversalForm> form, int pairs) {
   Scene scene;
   scene.traversal.form = form;
   scene.render.width = scene.render.height = image;
   choose_camera(scene, world);
   const Frame frame = frame_of(world.cloud);
   const std::vector<Splat> splats = place_in_cube(world, frame);
-  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
+  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info()).variant;
   std::vector<double> build, build_peer;
   for (int k = 0; k < pairs; ++k) {
     const auto start = std::chrono::steady_clock::now();
-    build_pools(splats, scene.octree, variant);
+    build_pools(splats, variant);
     build.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     build_peer.push_back(EmbreePeer(splats).build_seconds());
   }
-  const OctreePools pools = build_pools(splats, scene.octree, variant);
+  const OctreePools pools = build_pools(splats, variant);
   Tracer tracer{session, upload_pools(session, pools, variant.storage), variant};
   const EmbreePeer peer(splats);
   const auto coherent = eye_rays(scene, frame), bounced = bounced_rays(splats, 1'000'000);
@@ -167,9 +169,8 @@ int main(int argc, char** argv) {
   app.add_option("CLOUD.ply", clouds, "scans to measure");
   CLI11_PARSE(app, argc, argv);
   if (sizes.empty() && clouds.empty()) sizes = {50'000, 500'000, 2'000'000};
-  const TraversalForm form = form_name == "step"   ? TraversalForm::step
-                             : form_name == "wide" ? TraversalForm::wide
-                                                   : TraversalForm::automatic;
+  std::optional<TraversalForm> form;
+  if (form_name != "auto") form = form_name == "step" ? TraversalForm::step : TraversalForm::wide;
   spdlog::set_level(spdlog::level::warn);
   try {
     Session session(choose_device(""));
