@@ -80,6 +80,13 @@ public:
     return data;
   }
 
+  /// The first `count` elements become `value`.
+  template <typename T>
+  void fill(const Buffer<T>& buffer, const T& value, std::size_t count) {
+    const std::vector<T> data(count, value);
+    write_bytes(buffer.handle, data.data(), count * sizeof(T));
+  }
+
   /// `texels` RGBA texels of four 32-bit words as image1d_buffer, or as image2d with rows of 2^width_log2 texels.
   cl::Memory upload_image1d(const void* texels, std::size_t count, bool is_float);
   cl::Memory upload_image2d(const void* texels, std::size_t count, bool is_float, unsigned width_log2);
