@@ -1,6 +1,6 @@
 #include "host/app/commands.h"
 #include "host/cl/session.h"
-#include "host/passes/variant.h"
+#include "host/passes/variant_list.h"
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -8,40 +8,13 @@ namespace pointgi {
 
 namespace {
 
-struct Build {
-  std::string file;
-  std::string options;
-};
-
-/// Every kernel file in every variant that the program can ask for.
-std::vector<Build> every_build(const DeviceInfo& info) {
-  std::vector<Build> builds{{"traverse/brute_force.cl", ""}};
-  const auto add_render = [&](const TraversalVariant& variant) {
-    builds.push_back({"render/eye_rays.cl", build_options(variant)});
-    builds.push_back({"render/shade.cl", build_options(variant, {})});
-    builds.push_back({"render/shade.cl", build_options(variant, {true, true, true})});
-  };
-  for (const unsigned lanes : {8u, 16u}) {
-    if (!info.is_cpu) continue; // the wide form's precondition
-    TraversalVariant variant;
-    variant.form = TraversalForm::wide;
-    variant.lanes = lanes;
-    builds.push_back({"traverse/trace.cl", build_options(variant)});
-    add_render(variant);
-  }
-  for (const PoolStorage storage : {PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d})
-    for (const Stepping stepping : {Stepping::exact, Stepping::absolute_delta})
-      for (const unsigned axis_bits : {1u, 2u}) {
-        if (storage != PoolStorage::buffer && !info.images) continue;
-        TraversalVariant variant;
-        variant.storage = storage;
-        variant.stepping = stepping;
-        variant.axis_bits = axis_bits;
-        builds.push_back({"traverse/trace.cl", build_options(variant)});
-        builds.push_back({"traverse/probe.cl", build_options(variant)});
-        add_render(variant);
-      }
-  return builds;
+/// Every program of the variants that this kind of device may run.
+std::vector<Program> every_program(const DeviceInfo& info) {
+  std::vector<Program> programs;
+  for (const ProgramUse& use : all_programs())
+    if (info.is_cpu ? use.cpu : use.gpu)
+      if (info.images || use.program.options.find("POOL_IMAGE") == std::string::npos) programs.push_back(use.program);
+  return programs;
 }
 
 std::string kind(const DeviceInfo& info) {
@@ -52,10 +25,10 @@ std::string kind(const DeviceInfo& info) {
 std::string check_device(const Device& device, std::size_t& count) {
   try {
     Session session(device);
-    const std::vector<Build> builds = every_build(device.info);
-    for (const Build& build : builds)
-      session.program(build.file, build.options);
-    count = builds.size();
+    const std::vector<Program> programs = every_program(device.info);
+    for (const Program& program : programs)
+      session.program(program.file, program.options);
+    count = programs.size();
     return {};
   } catch (const Error& error) {
     return error.what();

@@ -1,5 +1,7 @@
 #include "host/app/commands.h"
 #include "host/app/prepare.h"
+#include "host/passes/build_pools.h"
+#include "host/passes/tuned.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -39,7 +41,7 @@ float percentile(std::vector<float> values, double share) {
 
 ExitCode run_info(const std::string& file) {
   const bool is_scene = is_scene_file(file);
-  const Scene scene = is_scene ? load_scene(file) : load_bare_cloud(file);
+  const Scene scene = load_any(file, {});
   const WorldSplats splats = load_splats(scene);
   for (std::size_t i = 0; i < scene.clouds.size(); ++i)
     print_report(scene.clouds[i].file, splats.reports[i]);
@@ -60,8 +62,8 @@ ExitCode run_info(const std::string& file) {
   const Frame frame = frame_of(cloud);
   const std::vector<Splat> placed = place_in_cube(splats, frame);
   // No device is opened for this: the form told of is a CPU device's, unless the scene says.
-  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, true);
-  const OctreeSummary octree = summary_of(build_pools(placed, scene.octree, variant));
+  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, ideal_device(true)).variant;
+  const OctreeSummary octree = summary_of(build_pools(placed, variant));
   std::printf("  splats      %zu\n", cloud.size());
   std::printf("  bounds      [%.9g, %.9g, %.9g] to [%.9g, %.9g, %.9g]\n", low.x(), low.y(), low.z(), high.x(), high.y(),
               high.z());

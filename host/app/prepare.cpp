@@ -1,8 +1,10 @@
 #include "host/app/prepare.h"
+#include "host/app/default_view.h"
 #include "host/cloud/input_file.h"
 #include "host/error.h"
-#include "octree/build/cell_key.h"
-#include <algorithm>
+#include "host/scene/merge_coincident.h"
+#include <numeric>
+#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -10,21 +12,8 @@ bool is_scene_file(const std::string& file) {
   return has_extension(file, ".toml");
 }
 
-OctreePools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings,
-                        const TraversalVariant& variant) {
-  const bool wide = variant.form == TraversalForm::wide;
-  TreeOptions options;
-  options.axis_bits = variant.axis_bits;
-  // Flat around these on the scans; larger leaves keep the pools below 90 bytes a splat.
-  options.leaf_capacity = settings.leaf_capacity != 0 ? settings.leaf_capacity : wide ? 64 : 32;
-  options.max_depth = std::min(settings.max_depth, key_levels(variant.axis_bits));
-  options.listing = wide ? Listing::centres : Listing::overlaps;
-  const Tree tree = build_tree(splats, options);
-  OctreePools pools = wide ? OctreePools(pack_wide(splats, tree, variant.lanes)) : OctreePools(pack_step(splats, tree));
-#ifndef NDEBUG
-  std::visit([](const auto& p) { verify(p); }, pools);
-#endif
-  return pools;
+Scene load_any(const std::string& file, const std::vector<std::string>& overrides) {
+  return is_scene_file(file) ? load_scene(file, overrides) : load_bare_cloud(file, overrides);
 }
 
 void refuse_unsupported(const Scene& scene) {
@@ -33,6 +22,42 @@ void refuse_unsupported(const Scene& scene) {
       throw Error(ExitCode::input, material.place.text() + ": material \"" + material.name + "\": type \"" +
                                        name_of(material.type) +
                                        "\" cannot be rendered by this version; it renders \"diffuse\"");
+}
+
+namespace {
+
+void log_reports(const Scene& scene, const WorldSplats& splats) {
+  for (const std::string& warning : scene.warnings)
+    spdlog::warn("{}", warning);
+  for (std::size_t i = 0; i < splats.reports.size(); ++i) {
+    const CloudReport& r = splats.reports[i];
+    spdlog::info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
+                 r.normals_from, r.radii_from);
+    for (const std::string& warning : r.warnings)
+      spdlog::warn("{}: {}", scene.clouds[i].file, warning);
+  }
+}
+
+/// What the user left open is chosen so that the picture is worth looking at.
+void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
+  if (!scene.camera.chosen) spdlog::info("{}", choose_camera(scene, splats));
+  if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
+}
+
+} // namespace
+
+PlacedSplats load_and_place(Scene& scene, bool bare) {
+  const WorldSplats world = load_splats(scene);
+  choose_view(scene, world, bare);
+  log_reports(scene, world);
+  PlacedSplats placed;
+  placed.frame = frame_of(world.cloud);
+  placed.splats = place_in_cube(world, placed.frame);
+  placed.id.resize(placed.splats.size());
+  std::iota(placed.id.begin(), placed.id.end(), 0u);
+  if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)
+    spdlog::info("{} points that lie on others were merged with them", merged);
+  return placed;
 }
 
 } // namespace pointgi

@@ -1,20 +1,28 @@
 #pragma once
-/// What `render` and `info` share on the way from a file to the octree's pools.
-#include "host/passes/variant.h"
+/// What the commands share on the way from a file to the splats that the device takes.
 #include "host/scene/load_scene.h"
 #include "host/scene/splats.h"
-#include "octree/pack/pools.h"
 
 namespace pointgi {
 
 /// Whether the name is a scene file's (.toml) and not a cloud's.
 bool is_scene_file(const std::string& file);
 
-/// Builds the tree and packs it in the variant's form. Debug builds verify the pools.
-OctreePools build_pools(const std::vector<Splat>& splats, const OctreeSettings& settings,
-                        const TraversalVariant& variant);
+/// A scene file, or a bare cloud with a scene around it.
+Scene load_any(const std::string& file, const std::vector<std::string>& overrides);
 
 /// Throws Error(input) naming the first material that this version cannot render: never drawn wrong.
 void refuse_unsupported(const Scene& scene);
+
+/// The scene's splats as the device takes them.
+struct PlacedSplats {
+  Frame frame;
+  std::vector<Splat> splats;
+  std::vector<std::uint32_t> id; ///< of each splat: its place among the kept points of all clouds and shapes, in order
+};
+
+/// Loads, chooses a view where the scene has none (and, around a bare cloud, lights), places, merges what coincides;
+/// logs what was found.
+PlacedSplats load_and_place(Scene& scene, bool bare);
 
 } // namespace pointgi

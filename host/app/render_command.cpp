@@ -1,17 +1,16 @@
 #include "host/app/commands.h"
-#include "host/app/default_view.h"
 #include "host/app/interrupt.h"
 #include "host/app/prepare.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
 #include "host/cl/binary_cache.h"
-#include "host/scene/merge_coincident.h"
+#include "host/passes/build_pools.h"
+#include "host/passes/tuned.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <numeric>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -62,18 +61,6 @@ std::string output_of(const RenderOptions& options) {
   return options.output.empty() ? std::filesystem::path(options.input).stem().string() + ".exr" : options.output;
 }
 
-void log_reports(const Scene& scene, const WorldSplats& splats) {
-  for (const std::string& warning : scene.warnings)
-    spdlog::warn("{}", warning);
-  for (std::size_t i = 0; i < splats.reports.size(); ++i) {
-    const CloudReport& r = splats.reports[i];
-    spdlog::info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
-                 r.normals_from, r.radii_from);
-    for (const std::string& warning : r.warnings)
-      spdlog::warn("{}: {}", scene.clouds[i].file, warning);
-  }
-}
-
 /// The stages that later steps of light transport will fill; said so, not left out (method.md §7).
 void skip_indirect_stages(const Scene& scene, const DeviceLighting& lighting, StageLog& stages) {
   const bool lit = !lighting.delta.empty() || !lighting.emitters.empty() || lighting.has_environment;
@@ -114,17 +101,6 @@ std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) 
   return fnv1a(std::string_view(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
 }
 
-Scene scene_of(const RenderOptions& options) {
-  return is_scene_file(options.input) ? load_scene(options.input, overrides_of(options))
-                                      : load_bare_cloud(options.input, overrides_of(options));
-}
-
-/// What the user left open is chosen so that the picture is worth looking at.
-void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
-  if (!scene.camera.chosen) spdlog::info("{}", choose_camera(scene, splats));
-  if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
-}
-
 /// What a black or empty picture most often comes from.
 void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& scene) {
   if (totals.eye_rays_on_splats == 0 && !totals.interrupted && totals.eye_rays > 0) {
@@ -147,27 +123,6 @@ void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& s
         100.0 * backs);
 }
 
-/// The scene's splats as the device takes them.
-struct PlacedSplats {
-  Frame frame;
-  std::vector<Splat> splats;
-  std::vector<std::uint32_t> id; ///< of each splat: its place among the kept points of all clouds and shapes, in order
-};
-
-PlacedSplats load_and_place(Scene& scene, const RenderOptions& options) {
-  const WorldSplats world = load_splats(scene);
-  choose_view(scene, world, !is_scene_file(options.input));
-  log_reports(scene, world);
-  PlacedSplats placed;
-  placed.frame = frame_of(world.cloud);
-  placed.splats = place_in_cube(world, placed.frame);
-  placed.id.resize(placed.splats.size());
-  std::iota(placed.id.begin(), placed.id.end(), 0u);
-  if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)
-    spdlog::info("{} points that lie on others were merged with them", merged);
-  return placed;
-}
-
 /// Device memory as the variant wants it, plain buffers where the device's images are too small.
 DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
   if (!images_fit(session.info(), pools, variant.storage)) {
@@ -177,11 +132,20 @@ DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant&
   return upload_pools(session, pools, variant.storage);
 }
 
+/// The scene's wishes first, then what a profile of this device found, then the defaults of its class.
+VariantChoice choose_for(const Scene& scene, const DeviceInfo& device) {
+  const StoredWinner stored = stored_winner(device);
+  if (!stored.warning.empty()) spdlog::warn("{}", stored.warning);
+  const VariantChoice choice = choose_variant(scene.traversal, scene.octree, device, stored.file);
+  spdlog::info("variant: {} ({})", name_of(choice.variant), choice.source);
+  return choice;
+}
+
 Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "pointgi")
     throw Error(ExitCode::usage,
                 "--integrator " + options.integrator + ": this version has the integrator \"pointgi\" only");
-  Scene scene = scene_of(options);
+  Scene scene = load_any(options.input, overrides_of(options));
   if (!options.spp && options.quality != "normal") {
     const double factor = options.quality == "draft" ? 0.25 : 4.0;
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
@@ -230,15 +194,17 @@ ExitCode run_render(const RenderOptions& options) {
 
   Session session(choose_device(options.device));
   session.dump_kernels_to(options.dump_folder);
+  if (!options.trace_file.empty()) session.record_launches();
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
 
   stages.start("cloud");
-  PlacedSplats placed = load_and_place(scene, options);
+  PlacedSplats placed = load_and_place(scene, !is_scene_file(options.input));
   stages.finish(placed.splats.size(), "points");
 
   stages.start("octree");
-  TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
-  const OctreePools pools = build_pools(placed.splats, scene.octree, variant);
+  VariantChoice choice = choose_for(scene, session.info());
+  TraversalVariant& variant = choice.variant;
+  const OctreePools pools = build_pools(placed.splats, variant);
   placed.splats = {};
   std::vector<std::uint32_t> ids(source_of(pools).begin(), source_of(pools).end());
   for (std::uint32_t& id : ids)
@@ -258,12 +224,13 @@ ExitCode run_render(const RenderOptions& options) {
   warn_of_view(stats.render, placed.frame, scene);
   if (!options.stats_file.empty()) {
     stats.command = "render";
+    stats.variant = choice;
     stats.scene = &scene;
     stats.session = &session;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }
-  if (!options.trace_file.empty()) write_text(options.trace_file, stages.chrome_trace());
+  if (!options.trace_file.empty()) write_text(options.trace_file, stages.chrome_trace(session.launches()));
   std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());
   if (stats.render.interrupted) {
     spdlog::warn("interrupted: the picture holds its first {} of {} rows", stats.render.rows_done,

@@ -1,4 +1,6 @@
 #include "host/app/stages.h"
+#include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace pointgi {
@@ -31,18 +33,44 @@ void StageLog::skip(const std::string& name, const std::string& reason) {
   records_.push_back(record);
 }
 
-std::string StageLog::chrome_trace() const {
-  nlohmann::json events = nlohmann::json::array();
-  for (const StageRecord& record : records_)
-    if (record.ran)
-      events.push_back({{"name", record.name},
-                        {"cat", "stage"},
-                        {"ph", "X"},
-                        {"pid", 1},
-                        {"tid", 1},
-                        {"ts", 1e6 * record.start},
-                        {"dur", 1e6 * record.seconds},
-                        {"args", {{record.unit.empty() ? "items" : record.unit, record.items}}}});
+namespace {
+
+nlohmann::json trace_event(const std::string& name, const char* category, int thread, double start_s, double seconds,
+                           const nlohmann::json& arguments) {
+  return {{"name", name},        {"cat", category},      {"ph", "X"},        {"pid", 1}, {"tid", thread},
+          {"ts", 1e6 * start_s}, {"dur", 1e6 * seconds}, {"args", arguments}};
+}
+
+nlohmann::json thread_name(int thread, const char* name) {
+  return {{"name", "thread_name"}, {"ph", "M"}, {"pid", 1}, {"tid", thread}, {"args", {{"name", name}}}};
+}
+
+/// Seconds to add to the device's clock to get those since `begin`. The host sees a launch's end late, never early: the
+/// launch that it saw soonest tells best.
+double clock_offset(const std::vector<LaunchRecord>& launches, std::chrono::steady_clock::time_point begin) {
+  double offset = std::numeric_limits<double>::infinity();
+  for (const LaunchRecord& launch : launches)
+    offset = std::min(offset, std::chrono::duration<double>(launch.returned - begin).count() -
+                                  1e-9 * static_cast<double>(launch.end_ns));
+  return offset;
+}
+
+} // namespace
+
+std::string StageLog::chrome_trace(const std::vector<LaunchRecord>& launches) const {
+  constexpr int host = 1, device = 2;
+  nlohmann::json events = nlohmann::json::array({thread_name(host, "stages"), thread_name(device, "device")});
+  for (const StageRecord& r : records_)
+    if (r.ran)
+      events.push_back(
+          trace_event(r.name, "stage", host, r.start, r.seconds, {{r.unit.empty() ? "items" : r.unit, r.items}}));
+  const double offset = clock_offset(launches, begin_);
+  for (const LaunchRecord& launch : launches) {
+    nlohmann::json arguments = nlohmann::json::object();
+    if (!launch.label.empty()) arguments["variant"] = launch.label;
+    events.push_back(trace_event(launch.kernel, "kernel", device, offset + 1e-9 * static_cast<double>(launch.start_ns),
+                                 1e-9 * static_cast<double>(launch.end_ns - launch.start_ns), arguments));
+  }
   return nlohmann::json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump(1);
 }
 

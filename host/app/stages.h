@@ -1,5 +1,6 @@
 #pragma once
 /// The stages of a run: which exist for this scene, what they did, how long they took. Names are those of the folders.
+#include "host/cl/session.h"
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -30,8 +31,9 @@ public:
   const std::vector<StageRecord>& records() const { return records_; }
   double seconds() const; ///< since the log began
 
-  /// The stages as a Chrome trace (chrome://tracing, Perfetto).
-  std::string chrome_trace() const;
+  /// The stages, and below them the launches of a session that recorded them, as a Chrome trace (chrome://tracing,
+  /// Perfetto).
+  std::string chrome_trace(const std::vector<LaunchRecord>& launches) const;
 
 private:
   std::chrono::steady_clock::time_point begin_;

@@ -1,6 +1,5 @@
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 namespace pointgi {
@@ -15,6 +14,20 @@ void write_text(const std::string& path, const std::string& text) {
   AtomicFile file(path);
   file.write(text.data(), text.size());
   file.commit();
+}
+
+nlohmann::json variant_json(const TraversalVariant& v) {
+  return {{"name", name_of(v)},
+          {"form", name_of(v.form)},
+          {"branching", 1u << v.axis_bits},
+          {"order", name_of(v.order)},
+          {"leaf_capacity", v.leaf_capacity},
+          {"lanes", v.lanes},
+          {"storage", name_of(v.storage)},
+          {"stepping", name_of(v.stepping)},
+          {"grouping", name_of(v.grouping)},
+          {"group", name_of(v.group)},
+          {"fast_math", v.fast_math}};
 }
 
 void write_stats(const std::string& path, const Stats& stats, const StageLog& stages) {
@@ -34,6 +47,8 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
                    {"depth", octree.depth},
                    {"extra_splats", octree.extra_splats},
                    {"bytes", octree.bytes}};
+  out["variant"] = variant_json(stats.variant.variant);
+  out["variant"]["source"] = stats.variant.source;
   const RenderTotals& r = stats.render;
   out["render"] = {
       {"rays", r.rays},

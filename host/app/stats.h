@@ -2,7 +2,9 @@
 #include "host/app/stages.h"
 #include "host/cl/session.h"
 #include "host/passes/render.h"
+#include "host/passes/tuned.h"
 #include "octree/pack/pools.h"
+#include <nlohmann/json.hpp>
 
 namespace pointgi {
 
@@ -13,11 +15,15 @@ struct Stats {
   OctreeSummary octree;
   const Session* session = nullptr;
   RenderTotals render;
+  VariantChoice variant;
   double seconds = 0.0;
 };
 
 /// Writes the JSON object atomically. Throws Error(output).
 void write_stats(const std::string& path, const Stats& stats, const StageLog& stages);
+
+/// A variant's choices by their words in a scene file, and its name.
+nlohmann::json variant_json(const TraversalVariant& variant);
 
 /// Writes text atomically, for --trace. Throws Error(output).
 void write_text(const std::string& path, const std::string& text);

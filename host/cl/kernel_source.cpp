@@ -50,6 +50,10 @@ void append(const std::string& name, const std::string& included_by, std::set<st
 
 } // namespace
 
+std::string kernel_file(const std::string& name) {
+  return read_kernel_file(name, "");
+}
+
 std::string kernel_source(const std::string& file) {
   std::set<std::string> done;
   std::string out;

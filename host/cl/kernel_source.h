@@ -9,4 +9,7 @@ namespace pointgi {
 /// POINTGI_KERNEL_DIR names. Throws Error(usage) when a file is missing there.
 std::string kernel_source(const std::string& file);
 
+/// The bare text of one file below kernels/ ("tuned/cpu.toml"), from the same two places.
+std::string kernel_file(const std::string& name);
+
 } // namespace pointgi

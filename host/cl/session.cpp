@@ -30,6 +30,13 @@ LaunchShape LaunchShape::line(std::size_t count, std::size_t group) {
   return {{groups * group, 1}, {group, 1}};
 }
 
+LaunchShape LaunchShape::grid(std::size_t columns, std::size_t rows, std::size_t x, std::size_t y) {
+  const auto padded = [](std::size_t count, std::size_t group) {
+    return std::max<std::size_t>(1, (count + group - 1) / group) * group;
+  };
+  return {{padded(columns, x), padded(rows, y)}, {x, y}};
+}
+
 Session::Session(const Device& device) : info_(device.info), device_(device.handle) {
   try {
     context_ = cl::Context(device_);
@@ -194,11 +201,15 @@ double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint argume
     queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(shape.global[0], shape.global[1]),
                                 cl::NDRange(shape.local[0], shape.local[1]), nullptr, &event);
     event.wait();
-    const double seconds = 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                                      event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
-    KernelTime& time = times_[name_of(kernel)];
+    const auto returned = std::chrono::steady_clock::now();
+    const std::uint64_t start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
+                        end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    const double seconds = 1e-9 * static_cast<double>(end - start);
+    const std::string name = name_of(kernel);
+    KernelTime& time = times_[name];
     time.launches += 1;
     time.seconds += seconds;
+    if (recording_) launches_.push_back({name, label_, start, end, returned});
     return seconds;
   } catch (const cl::Error& error) {
     rethrow(error, info_, "running a kernel");

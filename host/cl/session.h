@@ -2,6 +2,7 @@
 /// One device at work: context, queue, programs, buffers, launches. The only route to the OpenCL API.
 #include "host/cl/device.h"
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,6 +14,14 @@ namespace pointgi {
 struct KernelTime {
   std::size_t launches = 0;
   double seconds = 0.0;
+};
+
+/// One launch as the device's clock saw it.
+struct LaunchRecord {
+  std::string kernel;
+  std::string label;                              ///< what the caller said it works on; may be empty
+  std::uint64_t start_ns = 0, end_ns = 0;         ///< the device's clock, whose zero is its own
+  std::chrono::steady_clock::time_point returned; ///< when the host saw the end: soon after end_ns
 };
 
 /// Typed device memory of a fixed number of elements; frees itself.
@@ -29,6 +38,8 @@ struct LaunchShape {
 
   /// 1-D: `count` work-items, padded to whole groups of `group`.
   static LaunchShape line(std::size_t count, std::size_t group = 64);
+  /// 2-D: `columns` x `rows` work-items, padded to whole groups of x by y.
+  static LaunchShape grid(std::size_t columns, std::size_t rows, std::size_t x, std::size_t y);
 };
 
 class Session {
@@ -69,6 +80,13 @@ public:
     return data;
   }
 
+  /// The first `count` elements become `value`.
+  template <typename T>
+  void fill(const Buffer<T>& buffer, const T& value, std::size_t count) {
+    const std::vector<T> data(count, value);
+    write_bytes(buffer.handle, data.data(), count * sizeof(T));
+  }
+
   /// `texels` RGBA texels of four 32-bit words as image1d_buffer, or as image2d with rows of 2^width_log2 texels.
   cl::Memory upload_image1d(const void* texels, std::size_t count, bool is_float);
   cl::Memory upload_image2d(const void* texels, std::size_t count, bool is_float, unsigned width_log2);
@@ -88,6 +106,10 @@ public:
   }
 
   const std::map<std::string, KernelTime>& kernel_times() const { return times_; }
+  /// From now on every launch is kept, for traces: some 100 bytes each.
+  void record_launches() { recording_ = true; }
+  void label_launches(const std::string& label) { label_ = label; }
+  const std::vector<LaunchRecord>& launches() const { return launches_; }
   std::size_t programs_compiled() const { return compiled_; }
   std::size_t programs_from_cache() const { return from_cache_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
@@ -129,6 +151,9 @@ private:
   std::size_t compiled_ = 0;
   std::size_t from_cache_ = 0;
   std::string dump_folder_;
+  bool recording_ = false;
+  std::string label_;
+  std::vector<LaunchRecord> launches_;
 };
 
 /// The text of an OpenCL error code: "CL_OUT_OF_RESOURCES (-5)".

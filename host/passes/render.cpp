@@ -1,5 +1,5 @@
 #include "host/passes/render.h"
-#include "shared/traversal_types.h"
+#include "host/passes/tile_renderer.h"
 #include <algorithm>
 #include <cstring>
 
@@ -81,68 +81,6 @@ std::vector<ChannelName> film_channels() {
 
 namespace {
 
-struct LaunchSeconds {
-  double eye = 0.0, shade = 0.0;
-};
-
-/// The kernels of the picture with all of their arguments but the tile's place.
-class TileRenderer {
-public:
-  TileRenderer(Session& session, const DevicePools& pools, const RenderRequest& request)
-      : session_(session), pools_(pools), params_(request.lighting.params) {
-    const DeviceLighting& lighting = request.lighting;
-    params_.step_delta = static_cast<float>(request.variant.step_delta / request.frame.side);
-    const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-    packets_ = request.variant.form == TraversalForm::wide;
-    eye_rays_ = session.kernel("render/eye_rays.cl", build_options(request.variant), "trace_eye_rays");
-    shade_ = session.kernel("render/shade.cl", build_options(request.variant, features), "shade_pixels");
-    device_params_ = session.upload(&params_, 1);
-    materials_ = session.upload(lighting.materials);
-    delta_ = session.upload(lighting.delta);
-    emitters_ = session.upload(lighting.emitters);
-  }
-
-  pg_uint samples() const { return params_.samples; }
-
-  /// One pass of up to 32 samples over a tile.
-  LaunchSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample) {
-    const std::size_t pixels = static_cast<std::size_t>(columns) * rows;
-    if (film_.size < pixels * FILM_CHANNELS) {
-      film_ = session_.allocate<float>(pixels * FILM_CHANNELS);
-      hits_ = session_.allocate<EyeHits>(pixels);
-    }
-    const auto at_x = static_cast<cl_uint>(x), at_y = static_cast<cl_uint>(y), across = static_cast<cl_uint>(columns),
-               down = static_cast<cl_uint>(rows);
-    const LaunchShape group_a_pixel{{std::size_t{GRID_X} * across, std::size_t{GRID_Y} * down}, {GRID_X, GRID_Y}};
-    const LaunchShape item_a_square{
-        {(across + PACKET_COLUMNS - 1) / PACKET_COLUMNS, (down + PACKET_ROWS - 1) / PACKET_ROWS}, {1, 1}};
-    const cl_uint sample = first_sample;
-    LaunchSeconds seconds;
-    seconds.eye = session_.launch(eye_rays_, packets_ ? item_a_square : group_a_pixel, pools_.nodes, pools_.leaves,
-                                  pools_.points, device_params_, hits_, at_x, at_y, across, down, sample);
-    seconds.shade = session_.launch(shade_, group_a_pixel, pools_.nodes, pools_.leaves, pools_.points, device_params_,
-                                    materials_, delta_, emitters_, hits_, film_, at_x, at_y, sample);
-    return seconds;
-  }
-
-  std::vector<float> film(int columns, int rows) {
-    return session_.download(film_, static_cast<std::size_t>(columns) * rows * FILM_CHANNELS);
-  }
-
-private:
-  Session& session_;
-  const DevicePools& pools_;
-  RenderParams params_;
-  bool packets_ = false; ///< a work-item traces the eye rays of 2 x 2 pixels; else one ray
-  cl::Kernel eye_rays_, shade_;
-  Buffer<RenderParams> device_params_;
-  Buffer<Material> materials_;
-  Buffer<DeltaLight> delta_;
-  Buffer<Emitter> emitters_;
-  Buffer<EyeHits> hits_;
-  Buffer<float> film_;
-};
-
 /// A finished tile into its band and the totals.
 void resolve_tile(const std::vector<float>& film, int column, int columns, const RenderRequest& request,
                   pg_uint samples, Band& band, RenderTotals& totals) {
@@ -163,7 +101,7 @@ void resolve_tile(const std::vector<float>& film, int column, int columns, const
 RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
-  TileRenderer tiles(session, pools, request);
+  TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant);
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;
@@ -181,9 +119,9 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
           totals.interrupted = true;
           return totals;
         }
-        const LaunchSeconds seconds = tiles.launch(window.x0 + column, window.y0 + row, columns, rows, sample);
+        const TileSeconds seconds = tiles.launch(window.x0 + column, window.y0 + row, columns, rows, sample);
         totals.eye_seconds += seconds.eye;
-        totals.device_seconds += seconds.eye + seconds.shade;
+        totals.device_seconds += seconds.all();
         longest = std::max({longest, seconds.eye, seconds.shade});
         const double of_tile = std::min(1.0, static_cast<double>(sample + GRID_RAYS) / tiles.samples());
         progress((static_cast<double>(row) * width + (column + columns * of_tile) * rows) /

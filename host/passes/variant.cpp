@@ -1,18 +1,38 @@
 #include "host/passes/variant.h"
-#include "host/error.h"
+#include <algorithm>
 
 namespace pointgi {
 
-TraversalVariant choose_variant(const TraversalSettings& settings, const OctreeSettings& octree, bool device_is_cpu) {
-  TraversalVariant variant{settings, octree.branching == 4 ? 2u : 1u};
-  const bool step_settings =
-      octree.branching != 2 || settings.storage != PoolStorage::buffer || settings.stepping != Stepping::exact;
-  if (settings.form == TraversalForm::automatic)
-    variant.form = device_is_cpu && !step_settings ? TraversalForm::wide : TraversalForm::step;
-  else if (settings.form == TraversalForm::wide && step_settings)
-    throw Error(ExitCode::usage, "traversal.form = \"wide\" goes with octree.branching = 2, storage = \"buffer\" and "
-                                 "stepping = \"exact\"; set these, or form = \"step\"");
-  return variant;
+namespace {
+
+/// Kernels that traversal.fast_math may loosen; all others answer to the bit. Not -cl-fast-relaxed-math and not
+/// -cl-finite-math-only: empty boxes and parallel rays are infinities, which these let compilers forget.
+constexpr const char* fast_files[] = {"traverse/trace.cl", "render/eye_rays.cl", "render/shade.cl"};
+constexpr const char* fast_options = " -cl-mad-enable -cl-no-signed-zeros -cl-denorms-are-zero";
+
+Program program(const TraversalVariant& variant, const char* file, const std::string& more) {
+  const bool may = std::any_of(std::begin(fast_files), std::end(fast_files),
+                               [&](const char* fast) { return std::string(fast) == file; });
+  return {file, build_options(variant) + more + (variant.fast_math && may ? fast_options : "")};
+}
+
+std::string group_options(WorkGroup group) {
+  return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
+}
+
+} // namespace
+
+std::string name_of(const TraversalVariant& v) {
+  const bool wide = v.form == TraversalForm::wide;
+  std::string name = name_of(v.form);
+  if (wide)
+    name += "-lanes" + std::to_string(v.lanes);
+  else
+    name += "-n" + std::to_string(1u << v.axis_bits) + "-" + name_of(v.storage);
+  name += std::string("-") + name_of(v.order) + "-leaf" + std::to_string(v.leaf_capacity) + "-" + name_of(v.grouping) +
+          "-" + name_of(v.group);
+  if (v.stepping == Stepping::absolute_delta) name += "-delta";
+  return v.fast_math ? name + "-fast" : name;
 }
 
 std::string build_options(const TraversalVariant& variant) {
@@ -28,12 +48,21 @@ std::string build_options(const TraversalVariant& variant) {
   return options;
 }
 
-std::string build_options(const TraversalVariant& variant, const SceneFeatures& features) {
-  std::string options = build_options(variant);
+Program trace_program(const TraversalVariant& variant) {
+  return program(variant, "traverse/trace.cl", variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : "");
+}
+
+Program eye_rays_program(const TraversalVariant& variant) {
+  return program(variant, "render/eye_rays.cl",
+                 variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : group_options(variant.group));
+}
+
+Program shade_program(const TraversalVariant& variant, const SceneFeatures& features) {
+  std::string options = group_options(variant.group);
   if (features.delta_lights) options += " -D HAS_DELTA_LIGHTS";
   if (features.emitters) options += " -D HAS_EMITTERS";
   if (features.environment) options += " -D HAS_ENVIRONMENT";
-  return options;
+  return program(variant, "render/shade.cl", options);
 }
 
 } // namespace pointgi

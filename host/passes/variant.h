@@ -5,14 +5,25 @@
 
 namespace pointgi {
 
-/// The user's settings and what the kernels must know of the tree. `form` is no longer automatic.
-struct TraversalVariant : TraversalSettings {
+/// A variant of octree and traversal, nothing left open. What goes with what: host/passes/variant_list.h.
+struct TraversalVariant {
+  TraversalForm form = TraversalForm::step;
   unsigned axis_bits = 1; ///< log2 N of the tree
+  PointOrder order = PointOrder::morton;
+  unsigned leaf_capacity = 32;
+  unsigned max_depth = 21;
+  unsigned lanes = 8;                        ///< wide form only
+  PoolStorage storage = PoolStorage::buffer; ///< step form only, as is stepping
+  Stepping stepping = Stepping::exact;
+  double step_delta = 0.05; ///< world units; absolute_delta only
+  RayGrouping grouping = RayGrouping::ray;
+  WorkGroup group;
+  bool fast_math = false;
 };
 
-/// The variant for a device: `automatic` becomes wide on CPU devices when the settings allow it (N = 2, no setting of
-/// the step form chosen), else step. Throws Error(usage) when the wide form is asked for with N = 4.
-TraversalVariant choose_variant(const TraversalSettings& settings, const OctreeSettings& octree, bool device_is_cpu);
+/// Tells variants apart, for people and for --filter: "step-n2-buffer-morton-leaf32-ray-8x4",
+/// "wide-lanes8-morton-leaf64-packet-8x4-fast".
+std::string name_of(const TraversalVariant& variant);
 
 /// What the scene has, so that kernels are built without what it has not (method.md §7).
 struct SceneFeatures {
@@ -24,7 +35,22 @@ struct SceneFeatures {
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
 constexpr unsigned image_width_log2 = 12;
 
+/// A file below kernels/ and what it is built with.
+struct Program {
+  std::string file;
+  std::string options;
+};
+
+/// Given rays: trace_closest_rays, trace_any_rays, trace_blended_rays; with grouping packet also
+/// trace_packets.
+Program trace_program(const TraversalVariant& variant);
+/// Hits of the picture's eye rays, trace_eye_rays: a pixel a half or whole work-group, or (packets) a square of pixels
+/// a work-item.
+Program eye_rays_program(const TraversalVariant& variant);
+/// The picture from these hits, shade_pixels: a pixel a half or whole work-group.
+Program shade_program(const TraversalVariant& variant, const SceneFeatures& features);
+
+/// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
-std::string build_options(const TraversalVariant& variant, const SceneFeatures& features);
 
 } // namespace pointgi

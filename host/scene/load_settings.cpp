@@ -1,4 +1,5 @@
-/// The sections that stand once in a scene: [render], [camera], [radiosity], [caustics], [environment].
+/// The sections that stand once in a scene: [render], [camera], [radiosity], [caustics], [octree], [traversal],
+/// [environment].
 #include "host/scene/load_sections.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -94,14 +95,34 @@ void load_caustics(const TableReader& root, CausticSettings& caustics) {
   if (const auto power = table->choice("power", {"unbiased", "equal"})) caustics.power = *power;
 }
 
+namespace {
+
+/// A choice among `values` by their names, or "auto": left open.
+template <typename T>
+void load_choice(const TableReader& table, const char* key, const std::vector<T>& values, std::optional<T>& into) {
+  std::vector<std::string> words{"auto"};
+  for (const T value : values)
+    words.push_back(name_of(value));
+  const auto word = table.choice(key, words);
+  if (!word) return;
+  const auto at = std::find(words.begin() + 1, words.end(), *word);
+  if (at == words.end())
+    into.reset();
+  else
+    into = values[static_cast<std::size_t>(at - words.begin() - 1)];
+}
+
+} // namespace
+
 void load_octree(const TableReader& root, OctreeSettings& octree) {
   const std::optional<TableReader> table = root.table("octree");
   if (!table) return;
-  table->allow_only({"branching", "leaf_capacity", "max_depth"});
+  table->allow_only({"branching", "order", "leaf_capacity", "max_depth"});
   if (const auto branching = table->integer("branching", {2, 4})) {
     if (*branching == 3) table->fail("branching", "expected 2 or 4, found 3");
     octree.branching = static_cast<unsigned>(*branching);
   }
+  load_choice(*table, "order", point_orders(), octree.order);
   if (const auto capacity = table->integer("leaf_capacity", limits::leaf_capacity))
     octree.leaf_capacity = static_cast<unsigned>(*capacity);
   if (const auto depth = table->integer("max_depth", limits::octree_depth))
@@ -111,22 +132,19 @@ void load_octree(const TableReader& root, OctreeSettings& octree) {
 void load_traversal(const TableReader& root, TraversalSettings& traversal) {
   const std::optional<TableReader> table = root.table("traversal");
   if (!table) return;
-  table->allow_only({"form", "lanes", "storage", "stepping", "step_delta"});
-  if (const auto form = table->choice("form", {"auto", "step", "wide"}))
-    traversal.form = *form == "auto"   ? TraversalForm::automatic
-                     : *form == "step" ? TraversalForm::step
-                                       : TraversalForm::wide;
+  table->allow_only({"form", "grouping", "group", "lanes", "storage", "stepping", "step_delta", "fast_math"});
+  load_choice(*table, "form", traversal_forms(), traversal.form);
+  load_choice(*table, "grouping", ray_groupings(), traversal.grouping);
+  load_choice(*table, "group", work_groups(), traversal.group);
   if (const auto lanes = table->integer("lanes", {8, 16})) {
     if (*lanes != 8 && *lanes != 16) table->fail("lanes", "expected 8 or 16, found " + std::to_string(*lanes));
     traversal.lanes = static_cast<unsigned>(*lanes);
   }
-  if (const auto storage = table->choice("storage", {"buffer", "image1d_buffer", "image2d"}))
-    traversal.storage = *storage == "buffer"           ? PoolStorage::buffer
-                        : *storage == "image1d_buffer" ? PoolStorage::image1d_buffer
-                                                       : PoolStorage::image2d;
-  if (const auto stepping = table->choice("stepping", {"exact", "absolute_delta"}))
-    traversal.stepping = *stepping == "exact" ? Stepping::exact : Stepping::absolute_delta;
+  load_choice(*table, "storage", pool_storages(), traversal.storage);
+  if (const auto stepping = table->choice("stepping", {name_of(Stepping::exact), name_of(Stepping::absolute_delta)}))
+    traversal.stepping = *stepping == name_of(Stepping::exact) ? Stepping::exact : Stepping::absolute_delta;
   if (const auto delta = table->number("step_delta", limits::length)) traversal.step_delta = *delta;
+  if (const auto fast = table->boolean("fast_math")) traversal.fast_math = *fast;
 }
 
 void load_environment(const TableReader& root, Vector3d& radiance) {

@@ -21,4 +21,55 @@ const char* name_of(MaterialType type) {
   return "unknown";
 }
 
+const char* name_of(PointOrder order) {
+  return order == PointOrder::morton ? "morton" : "hilbert";
+}
+
+const char* name_of(TraversalForm form) {
+  return form == TraversalForm::step ? "step" : "wide";
+}
+
+const char* name_of(PoolStorage storage) {
+  return storage == PoolStorage::buffer           ? "buffer"
+         : storage == PoolStorage::image1d_buffer ? "image1d_buffer"
+                                                  : "image2d";
+}
+
+const char* name_of(Stepping stepping) {
+  return stepping == Stepping::exact ? "exact" : "absolute_delta";
+}
+
+const char* name_of(RayGrouping grouping) {
+  return grouping == RayGrouping::ray ? "ray" : "packet";
+}
+
+std::string name_of(WorkGroup group) {
+  return std::to_string(group.x) + "x" + std::to_string(group.y);
+}
+
+const std::vector<PointOrder>& point_orders() {
+  static const std::vector<PointOrder> all{PointOrder::morton, PointOrder::hilbert};
+  return all;
+}
+
+const std::vector<TraversalForm>& traversal_forms() {
+  static const std::vector<TraversalForm> all{TraversalForm::step, TraversalForm::wide};
+  return all;
+}
+
+const std::vector<PoolStorage>& pool_storages() {
+  static const std::vector<PoolStorage> all{PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d};
+  return all;
+}
+
+const std::vector<RayGrouping>& ray_groupings() {
+  static const std::vector<RayGrouping> all{RayGrouping::ray, RayGrouping::packet};
+  return all;
+}
+
+const std::vector<WorkGroup>& work_groups() {
+  static const std::vector<WorkGroup> all{{8, 4}, {32, 1}, {16, 4}, {64, 1}};
+  return all;
+}
+
 } // namespace pointgi

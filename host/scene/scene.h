@@ -1,6 +1,7 @@
 #pragma once
 /// The scene as the file describes it, in world units and doubles: nothing loaded, nothing sampled yet.
 #include "host/cloud/complete.h"
+#include "octree/build/curve.h"
 #include <Eigen/Core>
 #include <optional>
 #include <string>
@@ -130,32 +131,61 @@ struct CausticSettings {
   std::optional<SourcePlace> place;
 };
 
-/// Form of the octree; the picture does not depend on it beyond rounding.
+/// Form of the octree; the picture does not depend on it beyond rounding. What is left open is chosen for the device
+/// (host/passes/tuned.h).
 struct OctreeSettings {
-  unsigned branching = 2;     ///< N of the N^d tree: 2 or 4
-  unsigned leaf_capacity = 0; ///< splats that a cell may list undivided; 0: 32 in the step form, 64 in the wide form
-  unsigned max_depth = 21;    ///< levels below the root; N = 4 has 10 at most
+  std::optional<unsigned> branching; ///< N of the N^d tree: 2 or 4
+  std::optional<PointOrder> order;
+  std::optional<unsigned> leaf_capacity; ///< splats that a cell may list undivided
+  unsigned max_depth = 21;               ///< levels below the root; N = 4 has 10 at most
 };
 
 enum class TraversalForm {
-  automatic, ///< wide on CPU devices, step elsewhere
-  step,      ///< cells, Begin-End pool, extra splats (method.md §2, §6)
-  wide       ///< tight child boxes, blocks of splats; N = 2, plain buffers, devices with vectors a work-item
+  step, ///< cells, Begin-End pool, extra splats (method.md §2, §6)
+  wide  ///< tight child boxes, blocks of splats; for devices with vectors a work-item
 };
 enum class PoolStorage { buffer, image1d_buffer, image2d };
 enum class Stepping {
   exact,         ///< integer cells; the default
   absolute_delta ///< the thesis' absolute delta, for trade measurements (method.md §6)
 };
+enum class RayGrouping {
+  ray,   ///< a ray a work-item, a pixel's 32 eye rays a work-group
+  packet ///< a pixel's 32 eye rays a work-item
+};
+struct WorkGroup { ///< shape of a work-group; kernels over one dimension take the product
+  unsigned x = 8, y = 4;
+  unsigned size() const { return x * y; }
+};
+inline bool operator==(WorkGroup a, WorkGroup b) {
+  return a.x == b.x && a.y == b.y;
+}
 
-/// Kernel variant of the traversal. Storage and stepping are of the step form.
+/// Kernel variant of the traversal. What is left open is chosen for the device; what goes with what is told by
+/// host/passes/variant_list.h.
 struct TraversalSettings {
-  TraversalForm form = TraversalForm::automatic;
-  unsigned lanes = 8; ///< splats a block of the wide form, 8 or 16
-  PoolStorage storage = PoolStorage::buffer;
+  std::optional<TraversalForm> form;
+  std::optional<RayGrouping> grouping;
+  std::optional<WorkGroup> group;     ///< one of work_groups()
+  std::optional<unsigned> lanes;      ///< splats a block of the wide form, 8 or 16
+  std::optional<PoolStorage> storage; ///< of the step form
   Stepping stepping = Stepping::exact;
   double step_delta = 0.05; ///< world units; absolute_delta only
+  bool fast_math = false;   ///< looser float rules; the picture is then approximate
 };
+
+/// The words that a scene file has for these, each beside its meaning; every value of a type, in order.
+const char* name_of(PointOrder order);
+const char* name_of(TraversalForm form);
+const char* name_of(PoolStorage storage);
+const char* name_of(Stepping stepping);
+const char* name_of(RayGrouping grouping);
+std::string name_of(WorkGroup group); ///< "8x4"
+const std::vector<PointOrder>& point_orders();
+const std::vector<TraversalForm>& traversal_forms();
+const std::vector<PoolStorage>& pool_storages();
+const std::vector<RayGrouping>& ray_groupings();
+const std::vector<WorkGroup>& work_groups();
 
 struct Scene {
   std::string file;

@@ -1,9 +1,11 @@
 /* Nearest hits of the eye rays of a tile. A launch takes samples first_sample to first_sample + 31 of those a pixel has,
  * fewer at the end; hits[j * columns + i] are those of the image's pixel (first_x + i, first_y + j).
- * Work-group, step form: a pixel, GRID_X x GRID_Y, a ray a work-item; NDRange (GRID_X * columns, GRID_Y * rows).
- * Wide form: a work-item 2 x 2 pixels, whose rays are traced as one packet (kernels/lib/wide_packet.cl);
- * NDRange (columns, rows) in such squares, padded. */
+ *   GROUP_X, GROUP_Y  shape of a work-group, 32 or 64 work-items: one or two pixels, a ray a work-item, by their linear
+ *                     number; NDRange (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows)
+ *   RAY_PACKETS       instead a work-item traces the rays of 2 x 2 pixels as one packet (kernels/lib/wide_packet.cl);
+ *                     NDRange (columns, rows) in such squares, padded */
 #include "render/camera.cl"
+#include "render/group.cl"
 #include "lib/traversal.cl"
 
 /* One sample's ray, traced on its own. */
@@ -14,7 +16,7 @@ static inline Hit eye_hit(POOL_PARAMS, __constant RenderParams* params, SampleId
   return sample_ray(params, id, &ray, &t_start) ? trace_closest(POOL_ARGS, ray) : none;
 }
 
-#if TRAVERSAL_FORM == FORM_WIDE
+#ifdef RAY_PACKETS
 #include "lib/wide_packet.cl"
 
 #define LANES_16 ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
@@ -89,16 +91,16 @@ __kernel void trace_eye_rays(POOL_PARAMS, __constant RenderParams* params, __glo
 }
 #else
 
-__kernel __attribute__((reqd_work_group_size(GRID_X, GRID_Y, 1)))
+__kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
 void trace_eye_rays(POOL_PARAMS, __constant RenderParams* params, __global EyeHits* hits, uint first_x, uint first_y,
                     uint columns, uint rows, uint first_sample) {
-  const uint lane = get_local_id(1) * GRID_X + get_local_id(0);
-  const uint2 at = (uint2)(get_group_id(0), get_group_id(1));
-  const SampleId id = {(uint2)(first_x, first_y) + at, first_sample + lane, params->seed};
-  if (id.sample >= params->samples)
+  const GroupItem item = group_item();
+  const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + item.lane, params->seed};
+  if (item.column >= columns || item.row >= rows || id.sample >= params->samples)
     return;
   const Hit hit = eye_hit(POOL_ARGS, params, id);
-  hits[at.y * columns + at.x].t[lane] = hit.t;
-  hits[at.y * columns + at.x].splat[lane] = hit.splat;
+  __global EyeHits* of = hits + item.row * (size_t)columns + item.column;
+  of->t[item.lane] = hit.t;
+  of->splat[item.lane] = hit.splat;
 }
 #endif

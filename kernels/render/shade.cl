@@ -1,26 +1,33 @@
-/* The picture from the hits of its eye rays (kernels/render/eye_rays.cl): a pixel's 32 rays are one work-group, shaded
- * together (method.md section 6).
- * NDRange: (GRID_X * columns, GRID_Y * rows), local (GRID_X, GRID_Y); the group at (i, j) shades the image's pixel
- * (first_x + i, first_y + j) from hits[j * columns + i] into film[(j * columns + i) * FILM_CHANNELS ...]. A launch takes
- * samples first_sample to first_sample + 31 of those a pixel has, and adds to the film unless first_sample is 0; of fewer
- * the rest of the group rests. Results do not depend on how an image is cut into launches. */
+/* The picture from the hits of its eye rays (kernels/render/eye_rays.cl): a pixel's 32 rays are one work-group or half of
+ * one, shaded together (method.md section 6).
+ * NDRange: (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows), local (GROUP_X, GROUP_Y); pixel (i, j) of the tile,
+ * the image's (first_x + i, first_y + j), is shaded from hits[j * columns + i] into film[(j * columns + i) *
+ * FILM_CHANNELS ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel has, and adds to the film
+ * unless first_sample is 0; of fewer the rest of the group rests. Results do not depend on how an image is cut into
+ * launches. */
 #include "render/eye_sample.cl"
+#include "render/group.cl"
 
-__kernel __attribute__((reqd_work_group_size(GRID_X, GRID_Y, 1)))
+__kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
 void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
                   const __global DeltaLight* delta_lights, const __global Emitter* emitters,
-                  const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint first_sample) {
-  __local float group_sums[FILM_SUMS][GRID_RAYS];
-  __local uint group_points[GRID_RAYS];
-  const uint lane = get_local_id(1) * GRID_X + get_local_id(0);
-  const size_t at = get_group_id(1) * (size_t)get_num_groups(0) + get_group_id(0);
+                  const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint columns, uint rows,
+                  uint first_sample) {
+  __local float sums_of[GROUP_PIXELS][FILM_SUMS][GRID_RAYS];
+  __local uint points_of[GROUP_PIXELS][GRID_RAYS];
+  const GroupItem item = group_item();
+  const uint lane = item.lane;
+  __local float(*group_sums)[GRID_RAYS] = sums_of[item.pixel];
+  __local uint* group_points = points_of[item.pixel];
+  const bool in_tile = item.column < columns && item.row < rows;
+  const size_t at = item.row * (size_t)columns + item.column;
   const Lights lights = {params, materials, delta_lights, emitters};
-  const SampleId id = {(uint2)(first_x + get_group_id(0), first_y + get_group_id(1)), first_sample + lane, params->seed};
+  const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + lane, params->seed};
   float sums[FILM_SUMS];
   for (int c = 0; c < FILM_SUMS; ++c)
     sums[c] = 0.0f;
   uint point = FILM_NO_POINT;
-  if (id.sample < params->samples) {
+  if (in_tile && id.sample < params->samples) {
     Ray ray;
     float t_start;
     sample_ray(params, id, &ray, &t_start);
@@ -31,6 +38,8 @@ void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global M
     group_sums[c][lane] = sums[c];
   group_points[lane] = point;
   barrier(CLK_LOCAL_MEM_FENCE);
+  if (!in_tile)
+    return;
 
   /* One work-item a channel adds the 32 up, in one order on every device. */
   __global float* pixel = film + FILM_CHANNELS * at;

@@ -48,7 +48,7 @@ __kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __g
   surfaces[2u * i + 1u] = hit ? (float4)(s.albedo, 1.0f) : (float4)(0.0f);
 }
 
-#if TRAVERSAL_FORM == FORM_WIDE
+#ifdef RAY_PACKETS /* packets go through the wide form, on CPU devices */
 #include "lib/wide_packet.cl"
 
 /* answers[i] = nearest hits of packets[i]. NDRange: 1-D, one work-item a packet, padded. */

@@ -1,6 +1,7 @@
 # Turns every file of kernels/ into a string of the binary: name (below kernels/) and text, as host/cl/kernel_source reads.
 function(pointgi_embed_kernels output)
-  file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl ${CMAKE_SOURCE_DIR}/kernels/*.h)
+  file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/kernels/*.cl ${CMAKE_SOURCE_DIR}/kernels/*.h
+       ${CMAKE_SOURCE_DIR}/kernels/*.toml)
   list(SORT kernel_files)
   add_custom_command(
     OUTPUT ${output}

@@ -131,7 +131,7 @@ TEST_CASE("emission is seen as it is, from its front only") {
   CHECK(mean(back, "A") == 1.0);
 }
 
-TEST_CASE("channels: depth, position, normal, albedo and id of a floor; the environment where nothing is") {
+TEST_CASE("channels: depth, position, normal, albedo and id of a floor, and the environment where nothing is") {
   const Picture floor = render_text(floor_scene(0.05, 0.0, "[environment]\nradiance = [1.0, 1.0, 1.0]\n"));
   CHECK(mean(floor, "Z") == Approx(2.0 * std::sqrt(2.0)).epsilon(1e-3));
   CHECK(std::fabs(mean(floor, "P.Y")) < 1e-5);

@@ -77,13 +77,27 @@ TEST_CASE("the picture is linear in the light's power, from 1e-20 to 1e20") {
   }
 }
 
-TEST_CASE("form, branching, capacity and depth do not change the picture, storage not a bit of it") {
+TEST_CASE("form, branching, capacity and depth do not change the picture, storage and groups not a bit of it") {
   const auto with = [](const std::vector<std::string>& settings) {
     return render_text(ball_scene(1.0), [&](RenderOptions& o) { o.overrides = settings; });
   };
   const Picture truth = render_text(ball_scene(1.0)), step = with({"traversal.form=step"});
   for (const char* storage : {"traversal.storage=image1d_buffer", "traversal.storage=image2d"})
     CHECK(with({storage}).channels.at("R") == step.channels.at("R"));
+  for (const char* form : {"step", "wide"})
+    for (const char* grouping : {"ray", "packet"}) {
+      if (std::string(form) == "step" && std::string(grouping) == "packet") continue;
+      const auto in_groups = [&](const std::string& group) {
+        return with({std::string("traversal.form=") + form, std::string("traversal.grouping=") + grouping,
+                     "traversal.group=" + group});
+      };
+      const Picture whole = in_groups("8x4");
+      CHECK(mean_difference(whole, truth) < 1e-4);
+      for (const char* group : {"32x1", "16x4", "64x1"}) {
+        CAPTURE(form, grouping, group);
+        CHECK(in_groups(group).channels == whole.channels);
+      }
+    }
   // Another tree adds the weights of blended splats in another order: rounding.
   for (const char* setting :
        {"traversal.form=step", "traversal.form=wide", "traversal.lanes=16", "octree.branching=4",

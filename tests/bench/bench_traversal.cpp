@@ -3,8 +3,11 @@
 ///                   [CLOUD.ply …]
 #include "host/app/default_view.h"
 #include "host/app/prepare.h"
+#include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
+#include "host/passes/profile_rays.h"
 #include "host/passes/ray_packets.h"
+#include "host/passes/tuned.h"
 #include "host/scene/lighting.h"
 #include "tests/bench/embree_peer.h"
 #include "tests/bench/synthetic_blob.h"
@@ -16,7 +19,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <spdlog/spdlog.h>
 
 namespace {
@@ -29,59 +31,6 @@ constexpr int image = 256; // pixels a side
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
-}
-
-/// The pixels of the image in the order in which a renderer takes them: tiles of 16x16, in them squares of 2x2.
-std::vector<Eigen::Vector2i> pixels_by_tile() {
-  constexpr int tile = 16;
-  std::vector<Eigen::Vector2i> pixels;
-  for (int y = 0; y < image; y += tile)
-    for (int x = 0; x < image; x += tile)
-      for (int k = 0; k < tile * tile; ++k)
-        pixels.emplace_back(x + k / 4 % (tile / 2) * 2 + k % 2, y + k / (2 * tile) * 2 + k / 2 % 2);
-  return pixels;
-}
-
-/// 8x4 rays a pixel, a pixel's rays together, from the scene's camera.
-std::vector<RayQuery> eye_rays(const Scene& scene, const Frame& frame) {
-  const Camera camera = device_camera(scene, frame);
-  std::vector<RayQuery> rays;
-  rays.reserve(std::size_t{32} * image * image);
-  for (const Eigen::Vector2i& pixel : pixels_by_tile())
-    for (int s = 0; s < 32; ++s) {
-      const auto x = static_cast<float>(pixel.x() + (s % 8 + 0.5) / 8.0),
-                 y = static_cast<float>(pixel.y() + (s / 8 + 0.5) / 4.0);
-      Eigen::Vector3f d;
-      for (int a = 0; a < 3; ++a)
-        d[a] = camera.corner[a] + x * camera.step_x[a] + y * camera.step_y[a];
-      d.normalize();
-      RayQuery ray{};
-      std::copy_n(camera.origin, 3, ray.origin);
-      std::copy_n(d.data(), 3, ray.direction);
-      ray.t_max = 1e6f;
-      rays.push_back(ray);
-    }
-  return rays;
-}
-
-/// Cosine-distributed directions off random splats: what bounced light does to a traversal.
-std::vector<RayQuery> bounced_rays(const std::vector<Splat>& splats, std::size_t count) {
-  std::mt19937 g(7);
-  std::normal_distribution<float> gauss;
-  std::uniform_int_distribution<std::size_t> pick(0, splats.size() - 1);
-  std::vector<RayQuery> rays(count);
-  for (RayQuery& ray : rays) {
-    const Splat& s = splats[pick(g)];
-    const Eigen::Vector3f n(s.normal[0], s.normal[1], s.normal[2]);
-    const Eigen::Vector3f d = (n + Eigen::Vector3f(gauss(g), gauss(g), gauss(g)).normalized() * 0.999f).normalized();
-    for (int a = 0; a < 3; ++a) {
-      ray.origin[a] = s.position[a] + 0.5f * s.radius * n[a];
-      ray.direction[a] = d[a];
-    }
-    ray.t_min = s.radius;
-    ray.t_max = 8.0f;
-  }
-  return rays;
 }
 
 /// What a measurement counts: the wall's seconds, or those that the process computed on all its threads, which other
@@ -102,21 +51,25 @@ struct Tracer {
   DevicePools pools;
   TraversalVariant variant;
 
+  cl::Kernel kernel(const char* name) {
+    const Program program = trace_program(variant);
+    return session.kernel(program.file, program.options, name);
+  }
   void closest(const Buffer<RayQuery>& rays, const Buffer<RayAnswer>& answers) {
-    cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_closest_rays");
-    session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, answers,
-                   static_cast<cl_uint>(rays.size), 0.0f);
+    cl::Kernel traced = kernel("trace_closest_rays");
+    session.launch(traced, LaunchShape::line(rays.size, variant.group.size()), pools.nodes, pools.leaves, pools.points,
+                   rays, answers, static_cast<cl_uint>(rays.size), 0.0f);
   }
   /// Rays of one pixel together.
   void packets(const Buffer<RayPacketQuery>& rays, const Buffer<RayPacketAnswer>& answers) {
-    cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_packets");
-    session.launch(kernel, LaunchShape::line(rays.size, 1), pools.nodes, pools.leaves, pools.points, rays, answers,
-                   static_cast<cl_uint>(rays.size));
+    cl::Kernel traced = kernel("trace_packets");
+    session.launch(traced, LaunchShape::line(rays.size, variant.group.size()), pools.nodes, pools.leaves, pools.points,
+                   rays, answers, static_cast<cl_uint>(rays.size));
   }
   void any(const Buffer<RayQuery>& rays, const Buffer<cl_uint>& blocked) {
-    cl::Kernel kernel = session.kernel("traverse/trace.cl", build_options(variant), "trace_any_rays");
-    session.launch(kernel, LaunchShape::line(rays.size), pools.nodes, pools.leaves, pools.points, rays, blocked,
-                   static_cast<cl_uint>(rays.size), 0.0f);
+    cl::Kernel traced = kernel("trace_any_rays");
+    session.launch(traced, LaunchShape::line(rays.size, variant.group.size()), pools.nodes, pools.leaves, pools.points,
+                   rays, blocked, static_cast<cl_uint>(rays.size), 0.0f);
   }
 };
 
@@ -139,11 +92,10 @@ nlohmann::json report_rays(const char* kind, const Pairs& pairs, std::size_t ray
   return {{"mrays_per_s", ours}, {"embree_mrays_per_s", theirs}, {"ratio", pairs.ratio()}};
 }
 
-Pairs measure_build(const std::vector<Splat>& splats, const OctreeSettings& octree, const TraversalVariant& variant,
-                    int pairs) {
+Pairs measure_build(const std::vector<Splat>& splats, const TraversalVariant& variant, int pairs) {
   Pairs result;
   for (int k = 0; k < pairs; ++k) {
-    result.ours.push_back(seconds_of([&] { build_pools(splats, octree, variant); }));
+    result.ours.push_back(seconds_of([&] { build_pools(splats, variant); }));
     result.theirs.push_back(seconds_of([&] { EmbreePeer peer(splats); }));
   }
   return result;
@@ -153,7 +105,7 @@ Pairs measure_build(const std::vector<Splat>& splats, const OctreeSettings& octr
 Pairs measure_coherent(Tracer& tracer, const EmbreePeer& peer, const std::vector<RayQuery>& rays, int pairs,
                        double& hit_share) {
   std::vector<RayAnswer> answers(rays.size());
-  const bool packets = tracer.variant.form == TraversalForm::wide;
+  const bool packets = tracer.variant.grouping == RayGrouping::packet;
   const auto on_device = tracer.session.upload(rays);
   const auto device_answers = tracer.session.allocate<RayAnswer>(rays.size());
   const std::vector<RayPacketQuery> as_packets = packets_of(rays);
@@ -201,12 +153,13 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
   if (!scene.camera.chosen) choose_camera(scene, world);
   const Frame frame = frame_of(world.cloud);
   const std::vector<Splat> splats = place_in_cube(world, frame);
-  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info().is_cpu);
-  const Pairs build = measure_build(splats, scene.octree, variant, pairs);
-  const OctreePools pools = build_pools(splats, scene.octree, variant);
+  const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info()).variant;
+  const Pairs build = measure_build(splats, variant, pairs);
+  const OctreePools pools = build_pools(splats, variant);
   Tracer tracer{session, upload_pools(session, pools, variant.storage), variant};
   const EmbreePeer peer(splats);
-  const std::vector<RayQuery> coherent = eye_rays(scene, frame), bounced = bounced_rays(splats, 1'000'000);
+  const std::vector<RayQuery> coherent = eye_rays(device_camera(scene, frame), {0, image, 0, image}),
+                              bounced = bounced_rays(splats, 1'000'000, 7);
   double hit_share = 0.0;
   const Pairs coherent_pairs = measure_coherent(tracer, peer, coherent, pairs, hit_share);
   const auto [closest, any] = measure_incoherent(tracer, peer, bounced, pairs);
@@ -284,9 +237,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (sizes.empty() && clouds.empty()) sizes = {50'000, 500'000, 2'000'000};
   const auto with_form = [&](Scene scene) {
-    scene.traversal.form = form_name == "step"   ? TraversalForm::step
-                           : form_name == "wide" ? TraversalForm::wide
-                                                 : TraversalForm::automatic;
+    if (form_name != "auto") scene.traversal.form = form_name == "step" ? TraversalForm::step : TraversalForm::wide;
     return scene;
   };
   clock_id = clock_name == "cpu" ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;

@@ -1,11 +1,14 @@
+#include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
 #include "host/passes/ray_packets.h"
+#include "host/passes/variant_list.h"
 #include "octree/ref/closest_hit.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include "tests/support/rays.h"
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -18,31 +21,27 @@ struct Other {
   std::vector<cl_float4> surfaces; ///< two a ray: normal and t, albedo and 1
 };
 
-/// Nearest hits through the octree; `splat` is the index into `splats`.
+/// Nearest hits through the octree, one ray a work-item whatever the variant's grouping; `splat` is the index into
+/// `splats`.
 std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
-                                  const TraversalVariant& variant, Other* other = nullptr,
-                                  PointOrder order = PointOrder::morton) {
-  TreeOptions options{variant.axis_bits, 8, 21 / variant.axis_bits};
-  options.order = order;
-  options.listing = variant.form == TraversalForm::wide ? Listing::centres : Listing::overlaps;
-  const Tree tree = build_tree(splats, options);
-  const OctreePools pools = variant.form == TraversalForm::wide ? OctreePools(pack_wide(splats, tree, variant.lanes))
-                                                                : OctreePools(pack_step(splats, tree));
+                                  const TraversalVariant& variant, Other* other = nullptr) {
+  const OctreePools pools = build_pools(splats, variant);
   std::visit([](const auto& p) { verify(p); }, pools);
   Session& device = session();
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
-  cl::Kernel kernel = device.kernel("traverse/trace.cl", build_options(variant), "trace_closest_rays");
-  device.launch(kernel, LaunchShape::line(rays.size()), on_device.nodes, on_device.leaves, on_device.points, queries,
-                answers, static_cast<cl_uint>(rays.size()), 0.0f);
+  const Program program = trace_program(variant);
+  const LaunchShape shape = LaunchShape::line(rays.size(), variant.group.size());
+  cl::Kernel kernel = device.kernel(program.file, program.options, "trace_closest_rays");
+  device.launch(kernel, shape, on_device.nodes, on_device.leaves, on_device.points, queries, answers,
+                static_cast<cl_uint>(rays.size()), 0.0f);
   if (other != nullptr) {
     const auto blocked = device.allocate<cl_uint>(rays.size());
     const auto surfaces = device.allocate<cl_float4>(2 * rays.size());
-    cl::Kernel any = device.kernel("traverse/trace.cl", build_options(variant), "trace_any_rays");
-    cl::Kernel blended = device.kernel("traverse/trace.cl", build_options(variant), "trace_blended_rays");
+    cl::Kernel any = device.kernel(program.file, program.options, "trace_any_rays");
+    cl::Kernel blended = device.kernel(program.file, program.options, "trace_blended_rays");
     const auto count = static_cast<cl_uint>(rays.size());
-    const LaunchShape shape = LaunchShape::line(rays.size());
     device.launch(any, shape, on_device.nodes, on_device.leaves, on_device.points, queries, blocked, count, 0.0f);
     device.launch(blended, shape, on_device.nodes, on_device.leaves, on_device.points, queries, surfaces, count, 0.0f);
     other->blocked = device.download(blocked, rays.size());
@@ -78,6 +77,14 @@ std::size_t differences(const std::vector<RayAnswer>& a, const std::vector<RayAn
   return count;
 }
 
+/// The list that all shared tests go through: those whose tracing differs, as far as this device takes them.
+std::vector<TraversalVariant> valid_variants() {
+  std::vector<TraversalVariant> variants;
+  for (const TraversalVariant& variant : tracing_variants())
+    if (why_not(variant, session().info()).empty()) variants.push_back(variant);
+  return variants;
+}
+
 std::size_t hits(const std::vector<RayAnswer>& answers) {
   return static_cast<std::size_t>(
       std::count_if(answers.begin(), answers.end(), [](const RayAnswer& a) { return a.splat != NO_SPLAT; }));
@@ -85,34 +92,29 @@ std::size_t hits(const std::vector<RayAnswer>& answers) {
 
 } // namespace
 
-TEST_CASE("a million hard rays find the splat that a linear scan finds, in every storage and branching") {
+TEST_CASE("a million hard rays find the splat that a linear scan finds, through every kernel and order") {
   const auto splats = mixed_splats();
   const auto rays = hard_rays(splats, 1'000'000, 11);
   const auto truth = trace_all(splats, rays);
   CHECK(hits(truth) > rays.size() / 3);
-  for (const unsigned axis_bits : {1u, 2u})
-    for (const PoolStorage storage : {PoolStorage::buffer, PoolStorage::image1d_buffer, PoolStorage::image2d}) {
-      CAPTURE(static_cast<int>(storage), axis_bits);
-      TraversalVariant variant;
-      variant.storage = storage;
-      variant.axis_bits = axis_bits;
-      CHECK(differences(trace_tree(splats, rays, variant), truth) == 0);
-    }
-  for (const unsigned lanes : {8u, 16u}) {
-    CAPTURE(lanes);
-    TraversalVariant variant;
-    variant.form = TraversalForm::wide;
-    variant.lanes = lanes;
+  std::set<std::string> seen;
+  for (TraversalVariant variant : valid_variants()) {
+    variant.leaf_capacity = 8; // deeper than any that is used: more borders to go wrong at
+    if (!seen.insert(trace_program(variant).options + name_of(variant.order)).second) continue;
+    CAPTURE(name_of(variant));
     CHECK(differences(trace_tree(splats, rays, variant), truth) == 0);
   }
 }
 
-TEST_CASE("the order of the points in memory does not change what rays find") {
-  TraversalVariant variant;
-  variant.form = GENERATE(TraversalForm::step, TraversalForm::wide);
+TEST_CASE("every variant's trees and work-groups find what a linear scan finds") {
   const auto splats = mixed_splats();
-  const auto rays = hard_rays(splats, 100'000, 13);
-  CHECK(differences(trace_tree(splats, rays, variant, nullptr, PointOrder::hilbert), trace_all(splats, rays)) == 0);
+  const auto rays = hard_rays(splats, 20'011, 13); // no whole number of groups
+  const auto truth = trace_all(splats, rays);
+  for (const TraversalVariant& variant : valid_variants()) {
+    if (variant.grouping == RayGrouping::packet) continue; // below
+    CAPTURE(name_of(variant));
+    CHECK(differences(trace_tree(splats, rays, variant), truth) == 0);
+  }
 }
 
 TEST_CASE("the device's linear scan agrees with the host's in double precision") {
@@ -133,8 +135,7 @@ TEST_CASE("the device's linear scan agrees with the host's in double precision")
 }
 
 TEST_CASE("rays end: one splat, coincident splats, discs larger than the cells") {
-  TraversalVariant variant;
-  variant.form = GENERATE(TraversalForm::step, TraversalForm::wide);
+  const TraversalVariant variant = plain_variant(GENERATE(TraversalForm::step, TraversalForm::wide));
   std::vector<Splat> splats;
   SECTION("one") {
     splats = {make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.2f)};
@@ -156,20 +157,18 @@ TEST_CASE("any-hit says what closest-hit says, and blending agrees between the f
   const auto rays = hard_rays(splats, 100'000, 31);
   const auto truth = trace_all(splats, rays);
   std::vector<Other> forms;
-  for (const TraversalForm form : {TraversalForm::step, TraversalForm::wide})
-    for (const unsigned axis_bits : {1u, 2u}) {
-      if (form == TraversalForm::wide && axis_bits == 2) continue;
-      TraversalVariant variant;
-      variant.form = form;
-      variant.axis_bits = axis_bits;
-      Other other;
-      trace_tree(splats, rays, variant, &other);
-      std::size_t wrong = 0;
-      for (std::size_t i = 0; i < rays.size(); ++i)
-        wrong += (other.blocked[i] != 0) != (truth[i].splat != NO_SPLAT);
-      CHECK(wrong == 0);
-      forms.push_back(other);
-    }
+  std::set<std::string> seen;
+  for (const TraversalVariant& variant : valid_variants()) {
+    if (!seen.insert(trace_program(variant).options + name_of(variant.order)).second) continue;
+    CAPTURE(name_of(variant));
+    Other other;
+    trace_tree(splats, rays, variant, &other);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      wrong += (other.blocked[i] != 0) != (truth[i].splat != NO_SPLAT);
+    CHECK(wrong == 0);
+    forms.push_back(other);
+  }
   for (std::size_t f = 1; f < forms.size(); ++f) {
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < 2 * rays.size(); ++i)
@@ -198,24 +197,21 @@ TEST_CASE("packets of rays find what the rays find one by one") {
     }
   }
   const auto truth = trace_all(splats, rays);
-  for (const unsigned lanes : {8u, 16u}) {
-    TreeOptions options;
-    options.leaf_capacity = 64;
-    options.listing = Listing::centres;
-    const WidePools pools = pack_wide(splats, build_tree(splats, options), lanes);
-    TraversalVariant variant;
-    variant.form = TraversalForm::wide;
-    variant.lanes = lanes;
+  for (const TraversalVariant& variant : valid_variants()) {
+    if (variant.grouping != RayGrouping::packet) continue;
+    CAPTURE(name_of(variant));
+    const OctreePools pools = build_pools(splats, variant);
     Session& device = session();
-    const DevicePools on_device = upload_pools(device, pools);
+    const DevicePools on_device = upload_pools(device, pools, variant.storage);
     const auto queries = device.upload(packets_of(rays));
     const auto answers = device.allocate<RayPacketAnswer>(queries.size);
-    cl::Kernel kernel = device.kernel("traverse/trace.cl", build_options(variant), "trace_packets");
-    device.launch(kernel, LaunchShape::line(queries.size, 8), on_device.nodes, on_device.leaves, on_device.points,
-                  queries, answers, static_cast<cl_uint>(queries.size));
+    const Program program = trace_program(variant);
+    cl::Kernel kernel = device.kernel(program.file, program.options, "trace_packets");
+    device.launch(kernel, LaunchShape::line(queries.size, variant.group.size()), on_device.nodes, on_device.leaves,
+                  on_device.points, queries, answers, static_cast<cl_uint>(queries.size));
     auto found = rays_of(device.download(answers, queries.size));
     for (RayAnswer& answer : found)
-      answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : pools.source[answer.splat];
+      answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : source_of(pools)[answer.splat];
     CHECK(differences(found, truth) == 0);
   }
 }

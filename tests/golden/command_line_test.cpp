@@ -41,7 +41,25 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
     (stage["ran"] ? ran : skipped).push_back(stage["name"]);
   CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "render", "image"});
   CHECK(skipped == std::vector<std::string>{"vmap", "fmm", "photon"});
-  CHECK(json_of(folder.file("t.json"))["traceEvents"].size() == ran.size());
+  std::size_t stages = 0, launches = 0;
+  double stages_end = 0.0;
+  const auto trace = json_of(folder.file("t.json"));
+  for (const auto& event : trace["traceEvents"]) {
+    if (event["ph"] != "X") continue;
+    stages += event["cat"] == "stage";
+    if (event["cat"] == "stage") stages_end = event["ts"].get<double>() + event["dur"].get<double>();
+    if (event["cat"] != "kernel") continue;
+    launches += 1;
+    CHECK((event["name"] == "trace_eye_rays" || event["name"] == "shade_pixels"));
+  }
+  CHECK(stages == ran.size());
+  CHECK(launches == stats["kernels"]["trace_eye_rays"]["launches"].get<std::size_t>() +
+                        stats["kernels"]["shade_pixels"]["launches"].get<std::size_t>());
+  CHECK(stats["render"]["eye_mrays_per_s"] > 0.0);
+  for (const auto& event : trace["traceEvents"]) // within the run, on its own clock
+    if (event["ph"] == "X") CHECK((event["ts"] >= 0.0 && event["ts"] <= stages_end));
+  CHECK_THAT(stats["variant"]["source"].get<std::string>(), Contains("default of"));
+  CHECK_THAT(run.err, Contains("variant: " + stats["variant"]["name"].get<std::string>()));
 }
 
 TEST_CASE("wrong usage is exit code 2 and says what is right") {
@@ -121,10 +139,10 @@ TEST_CASE("a second start builds no kernel") {
   const std::string cache = "POINTGI_CACHE_DIR=" + folder.file("cache");
   const std::string arguments = "render " + scene + " -o " + folder.file("x.exr") + " --stats " + folder.file("s.json");
   REQUIRE(run_program(arguments, cache).code == 0);
-  CHECK(json_of(folder.file("s.json"))["programs"]["compiled"] == 1);
+  CHECK(json_of(folder.file("s.json"))["programs"]["compiled"] == 2);
   REQUIRE(run_program(arguments, cache).code == 0);
   CHECK(json_of(folder.file("s.json"))["programs"]["compiled"] == 0);
-  CHECK(json_of(folder.file("s.json"))["programs"]["from_cache"] == 1);
+  CHECK(json_of(folder.file("s.json"))["programs"]["from_cache"] == 2);
   // A damaged cache is built anew, not trusted.
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.file("cache")))
     if (entry.is_regular_file())
@@ -144,7 +162,7 @@ TEST_CASE("the same bits on 1, 2 and 4 threads") {
   }
 }
 
-TEST_CASE("an interrupted render keeps a partial picture; a killed one keeps the old picture") {
+TEST_CASE("an interrupted render keeps a partial picture, and a killed one keeps the old picture") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("x.exr");
   const std::string slow = "render " + scene + " --size 600x2000 --spp 128 -o " + out;
@@ -190,7 +208,7 @@ TEST_CASE("dumped kernels hold what the scene needs and no more") {
   CHECK_THAT(text, Contains("#line 1 \"kernels/lib/ray_splat.cl\""));
 }
 
-TEST_CASE("info tells what a file holds; devices list and check") {
+TEST_CASE("info tells what a file holds, and devices list and check") {
   const TemporaryFolder folder;
   const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
                                                       "property float y\nproperty float z\nproperty uchar weird\n"

@@ -6,7 +6,7 @@
 using namespace pointgi;
 using namespace pointgi::test;
 
-TEST_CASE("splats in one place that face alike become one; sides, materials and places stay apart") {
+TEST_CASE("splats in one place that face alike become one, while sides, materials and places stay apart") {
   std::vector<Splat> splats = {
       make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.10f), make_splat(0.2f, 0.5f, 0.5f, 0, 0, 1, 0.1f),
       make_splat(0.5f, 0.5f, 0.5f, 0, 0, -1, 0.1f), make_splat(0.5f, 0.5f, 0.5f, 0, 0.1f, 1, 0.2f),
@@ -23,7 +23,7 @@ TEST_CASE("splats in one place that face alike become one; sides, materials and 
   CHECK(splats[0].normal[1] > 0.0f);
 }
 
-TEST_CASE("a hundred thousand splats in one place are one; none of a sphere's goes") {
+TEST_CASE("a hundred thousand splats in one place are one, and none of a sphere's goes") {
   std::vector<Splat> pile(100'000, make_splat(0.3f, 0.3f, 0.3f, 1, 0, 0, 0.1f));
   std::vector<std::uint32_t> id(pile.size());
   CHECK(merge_coincident(pile, id) == 99'999);

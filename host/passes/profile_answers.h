@@ -1,0 +1,30 @@
+#pragma once
+/// What the launches of a profile found, and how it compares.
+#include "octree/view.h"
+#include "shared/traversal_types.h"
+#include <cstdint>
+#include <vector>
+
+namespace pointgi {
+
+struct Differences {
+  std::size_t wrong = 0;
+  std::size_t ties = 0; ///< another splat at exactly the same distance
+};
+
+/// Answers to the same rays; splats are input indices. Wrong: another splat, or a t further off than 1e-5 of the larger
+/// of t and the root cube's side. Trees of another order may keep another of two discs that are hit at one distance.
+Differences compare_answers(View<RayAnswer> found, View<RayAnswer> truth);
+
+/// Blocked or not, of the same rays.
+Differences compare_blocked(View<std::uint32_t> found, View<std::uint32_t> truth);
+
+/// Films of the same pixels. Pixels that differ are wrong where they are more than one in a hundred, else forgiven:
+/// blending adds up in another order, and a hit that rounds to the other side of a rim changes a sample.
+/// `lit_alike`: direct light is compared too; not where emitters stand in another order and are drawn differently.
+Differences compare_films(View<float> found, View<float> truth, bool lit_alike);
+
+/// Pool indices become input indices.
+void to_inputs(std::vector<RayAnswer>& answers, const std::vector<std::uint32_t>& source);
+
+} // namespace pointgi

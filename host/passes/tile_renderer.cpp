@@ -1,0 +1,45 @@
+#include "host/passes/tile_renderer.h"
+#include "shared/traversal_types.h"
+
+namespace pointgi {
+
+TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
+                           const TraversalVariant& variant)
+    : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping), group_(variant.group) {
+  params_.step_delta = static_cast<float>(variant.step_delta / side);
+  const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
+  const Program eye_rays = eye_rays_program(variant), shade = shade_program(variant, features);
+  eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");
+  shade_ = session.kernel(shade.file, shade.options, "shade_pixels");
+  device_params_ = session.upload(&params_, 1);
+  materials_ = session.upload(lighting.materials);
+  delta_ = session.upload(lighting.delta);
+  emitters_ = session.upload(lighting.emitters);
+}
+
+TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint first_sample) {
+  const auto width = static_cast<std::size_t>(columns), height = static_cast<std::size_t>(rows);
+  if (film_.size < width * height * FILM_CHANNELS) {
+    film_ = session_.allocate<float>(width * height * FILM_CHANNELS);
+    hits_ = session_.allocate<EyeHits>(width * height);
+  }
+  const auto parts = [](std::size_t whole, std::size_t size) { return (whole + size - 1) / size; };
+  const LaunchShape pixels =
+      LaunchShape::grid(parts(width, group_.size() / GRID_RAYS) * group_.x, height * group_.y, group_.x, group_.y);
+  const LaunchShape squares = LaunchShape::grid(parts(width, PACKET_COLUMNS), parts(height, PACKET_ROWS), 1, 1);
+  const auto number = [](auto value) { return static_cast<cl_uint>(value); };
+  TileSeconds seconds;
+  seconds.eye = session_.launch(eye_rays_, grouping_ == RayGrouping::packet ? squares : pixels, pools_.nodes,
+                                pools_.leaves, pools_.points, device_params_, hits_, number(x), number(y),
+                                number(columns), number(rows), number(first_sample));
+  seconds.shade = session_.launch(shade_, pixels, pools_.nodes, pools_.leaves, pools_.points, device_params_,
+                                  materials_, delta_, emitters_, hits_, film_, number(x), number(y), number(columns),
+                                  number(rows), number(first_sample));
+  return seconds;
+}
+
+std::vector<float> TileRenderer::film(int columns, int rows) {
+  return session_.download(film_, static_cast<std::size_t>(columns) * rows * FILM_CHANNELS);
+}
+
+} // namespace pointgi

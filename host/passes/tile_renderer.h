@@ -1,0 +1,44 @@
+#pragma once
+#include "host/passes/device_pools.h"
+#include "host/scene/lighting.h"
+
+namespace pointgi {
+
+/// Device seconds of a tile's two kernels.
+struct TileSeconds {
+  double eye = 0.0;   ///< nearest hits of the eye rays
+  double shade = 0.0; ///< everything after these
+  double all() const { return eye + shade; }
+};
+
+/// The picture's kernels in a variant, with all of their arguments but the tile's place. Borrows session and pools.
+class TileRenderer {
+public:
+  /// `side`: of the root cube, world units. Builds the program where it is not built yet.
+  TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
+               const TraversalVariant& variant);
+
+  pg_uint samples() const { return params_.samples; }
+
+  /// One pass of up to 32 samples over a tile of the image; returns the device's seconds.
+  TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
+
+  /// The film of the last tile, FILM_CHANNELS a pixel: sums over the samples of all passes since the first.
+  std::vector<float> film(int columns, int rows);
+
+private:
+  Session& session_;
+  const DevicePools& pools_;
+  RenderParams params_;
+  RayGrouping grouping_;
+  WorkGroup group_;
+  cl::Kernel eye_rays_, shade_;
+  Buffer<RenderParams> device_params_;
+  Buffer<Material> materials_;
+  Buffer<DeltaLight> delta_;
+  Buffer<Emitter> emitters_;
+  Buffer<EyeHits> hits_;
+  Buffer<float> film_;
+};
+
+} // namespace pointgi

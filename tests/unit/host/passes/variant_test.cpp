@@ -1,0 +1,97 @@
+#include "host/passes/variant_list.h"
+#include <catch2/catch.hpp>
+#include <set>
+
+using namespace pointgi;
+using Catch::Contains;
+
+TEST_CASE("every variant of the list has its own name, is valid somewhere, and the reference stands first") {
+  const auto all = all_variants();
+  CHECK(name_of(all.front()) == name_of(reference_variant()));
+  CHECK(name_of(all.front()) == "step-n2-buffer-morton-leaf32-ray-8x4");
+  std::set<std::string> names;
+  for (const TraversalVariant& v : all) {
+    CAPTURE(name_of(v));
+    CHECK(names.insert(name_of(v)).second);
+    CHECK((why_not(v, ideal_device(true)).empty() || why_not(v, ideal_device(false)).empty()));
+  }
+  // Every choice is there, in some variant.
+  const auto named = [&](const std::string& part) {
+    return std::count_if(names.begin(), names.end(), [&](const auto& n) { return n.find(part) != std::string::npos; });
+  };
+  for (const char* part :
+       {"step-n2", "step-n4", "wide-lanes8", "wide-lanes16", "-buffer-", "-image1d_buffer-", "-image2d-", "-morton-",
+        "-hilbert-", "-leaf16-", "-leaf128-", "-ray-", "-packet-", "-8x4", "-32x1", "-16x4", "-64x1", "-fast"})
+    CHECK(named(part) > 0);
+}
+
+TEST_CASE("variants say why they are not valid") {
+  TraversalVariant v = plain_variant(TraversalForm::step);
+  const DeviceInfo cpu = ideal_device(true), gpu = ideal_device(false);
+  CHECK(why_not(v, cpu).empty());
+  CHECK(why_not(v, gpu).empty());
+  v.grouping = RayGrouping::packet;
+  CHECK_THAT(why_not(v, cpu), Contains("packets go through the wide form"));
+  v.form = TraversalForm::wide;
+  CHECK(why_not(v, cpu).empty());
+  CHECK_THAT(why_not(v, gpu), Contains("CPU device"));
+  v.axis_bits = 2;
+  CHECK_THAT(why_not(v, cpu), Contains("N = 2"));
+  v = plain_variant(TraversalForm::wide);
+  v.storage = PoolStorage::image2d;
+  CHECK_THAT(why_not(v, cpu), Contains("plain buffers"));
+  v = plain_variant(TraversalForm::wide);
+  v.stepping = Stepping::absolute_delta;
+  CHECK_THAT(why_not(v, cpu), Contains("stepping is exact"));
+  v = plain_variant(TraversalForm::step);
+  v.axis_bits = 2;
+  CHECK(why_not(v, cpu).empty());
+  v.order = PointOrder::hilbert;
+  CHECK_THAT(why_not(v, cpu), Contains("Hilbert"));
+  v = plain_variant(TraversalForm::step);
+  v.storage = PoolStorage::image1d_buffer;
+  DeviceInfo plain = ideal_device(false);
+  plain.images = false;
+  CHECK_THAT(why_not(v, plain), Contains("images"));
+  v = plain_variant(TraversalForm::step);
+  v.group = {64, 1};
+  plain.max_work_group = 32;
+  CHECK_THAT(why_not(v, plain), Contains("gives 64"));
+  v.group = {32, 1};
+  CHECK(why_not(v, plain).empty());
+  plain.max_work_group = 16;
+  CHECK_THAT(why_not(v, plain), Contains("gives 32"));
+}
+
+TEST_CASE("options hang on what a kernel reads, fast math on the kernels that may have it") {
+  TraversalVariant v = plain_variant(TraversalForm::step);
+  v.group = {16, 4};
+  CHECK_THAT(shade_program(v, {}).options, Contains("GROUP_X=16") && Contains("GROUP_Y=4"));
+  CHECK_THAT(eye_rays_program(v).options, Contains("GROUP_X=16") && Contains("GROUP_Y=4"));
+  CHECK_THAT(trace_program(v).options, !Contains("GROUP"));
+  CHECK_THAT(shade_program(v, {true, false, true}).options,
+             Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && Contains("HAS_ENVIRONMENT"));
+  v.fast_math = true;
+  CHECK_THAT(shade_program(v, {}).options, Contains("-cl-mad-enable") && !Contains("finite"));
+  CHECK_THAT(trace_program(v).options, Contains("-cl-mad-enable"));
+  CHECK_THAT(build_options(v), !Contains("-cl-mad-enable"));
+  v = plain_variant(TraversalForm::wide);
+  CHECK_THAT(eye_rays_program(v).options, !Contains("RAY_PACKETS"));
+  v.grouping = RayGrouping::packet;
+  CHECK_THAT(eye_rays_program(v).options, Contains("RAY_PACKETS") && !Contains("GROUP"));
+  CHECK_THAT(trace_program(v).options, Contains("RAY_PACKETS"));
+  CHECK_THAT(shade_program(v, {}).options, !Contains("RAY_PACKETS"));
+}
+
+TEST_CASE("each program is listed once, with the devices that may run it") {
+  std::set<std::string> seen;
+  std::size_t cpu_only = 0;
+  for (const ProgramUse& use : all_programs()) {
+    CHECK(seen.insert(use.program.file + " " + use.program.options).second);
+    CHECK((use.cpu || use.gpu));
+    if (use.program.options.find("RAY_PACKETS") != std::string::npos) CHECK_FALSE(use.gpu);
+    cpu_only += !use.gpu;
+  }
+  CHECK(cpu_only > 0);
+  CHECK(seen.count("traverse/probe.cl " + build_options(reference_variant())) == 1);
+}
