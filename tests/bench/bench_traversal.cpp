@@ -228,7 +228,7 @@ int main(int argc, char** argv) {
   int pairs = 5;
   app.add_option("--json", json_file, "write the figures to this file");
   app.add_option("--markdown", markdown_file, "write them to this file as a table, Mrays/s ours against Embree's");
-  app.add_option("--splats", sizes, "sizes of the synthetic blob")->delimiter(',');
+  app.add_option("--splats", sizes, "sizes of the synthetic blob")->delimiter(',')->allow_extra_args(false);
   app.add_option("--pairs", pairs, "measurements of each side")->check(CLI::Range(1, 1000));
   app.add_option("--form", form_name, "auto, step or wide")->check(CLI::IsMember({"auto", "step", "wide"}));
   app.add_option("--clock", clock_name, "wall, or cpu: seconds computed by all threads")

@@ -1,0 +1,20 @@
+#pragma once
+/// The V-map: which clusters see each other, and how light goes between them (method.md §3).
+#include "octree/vmap/cluster_tree.h"
+
+namespace pointgi {
+
+enum class LinkKind : std::uint8_t {
+  far,  ///< well separated and wholly facing: expansions (M2L) times the visible share
+  mid,  ///< little light, facing mixed: the source as one flux vector, both clamps at each receiver
+  near_ ///< leaf pairs: points with points, clamped, times the visible share
+};
+
+/// An unordered pair of clusters (a <= b; a == b: a leaf with itself, near). No link: nothing is visible.
+struct Link {
+  std::uint32_t a = 0, b = 0;
+  float visible = 1.0f; ///< share of the segments between the two that nothing blocks, in (0, 1]
+  LinkKind kind = LinkKind::near_;
+};
+
+} // namespace pointgi
