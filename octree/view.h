@@ -12,7 +12,8 @@ struct View {
 
   View() = default;
   View(const T* d, std::size_t n) : data(d), size(n) {}
-  View(const std::vector<T>& v) : data(v.data()), size(v.size()) {} // NOLINT: implicit on purpose
+  template <class Allocator>
+  View(const std::vector<T, Allocator>& v) : data(v.data()), size(v.size()) {} // NOLINT: implicit on purpose
 
   const T& operator[](std::size_t i) const { return data[i]; }
   const T* begin() const { return data; }

@@ -206,7 +206,7 @@ ExitCode run_render(const RenderOptions& options) {
   TraversalVariant& variant = choice.variant;
   const OctreePools pools = build_pools(placed.splats, variant);
   placed.splats = {};
-  std::vector<std::uint32_t> ids(source_of(pools));
+  std::vector<std::uint32_t> ids(source_of(pools).begin(), source_of(pools).end());
   for (std::uint32_t& id : ids)
     id = placed.id[id];
   const DevicePools on_device = upload(session, pools, variant);

@@ -69,8 +69,8 @@ public:
     write_bytes(buffer.handle, data, size * sizeof(T));
     return buffer;
   }
-  template <typename T>
-  Buffer<T> upload(const std::vector<T>& data) {
+  template <typename T, typename Allocator>
+  Buffer<T> upload(const std::vector<T, Allocator>& data) {
     return upload(data.data(), data.size());
   }
   template <typename T>

@@ -1,6 +1,6 @@
 #include "host/cloud/knn.h"
-#include "host/cloud/parallel.h"
 #include "host/error.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <cmath>
 #include <flann/algorithms/dist.h>

@@ -1,5 +1,5 @@
 #include "host/cloud/normals.h"
-#include "host/cloud/parallel.h"
+#include "octree/parallel.h"
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "host/cloud/orient.h"
-#include "host/cloud/parallel.h"
 #include "host/cloud/spanning_forest.h"
+#include "octree/parallel.h"
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #include "host/cloud/spanning_forest.h"
-#include "host/cloud/parallel.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <array>
 #include <cmath>

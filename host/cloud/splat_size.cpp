@@ -1,7 +1,7 @@
 #include "host/cloud/splat_size.h"
 #include "host/cloud/cell_polygon.h"
-#include "host/cloud/parallel.h"
 #include "host/cloud/unfold.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <array>
 #include <atomic>

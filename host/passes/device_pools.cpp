@@ -27,8 +27,8 @@ DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage s
   if (storage == PoolStorage::buffer) {
     device.leaves = session.upload(pools.begin_end).handle;
   } else { // four entries a texel (kernels/lib/pools.cl)
-    std::vector<std::uint32_t> padded = pools.begin_end;
-    padded.resize((padded.size() + 3) / 4 * 4);
+    Pool<std::uint32_t> padded = pools.begin_end;
+    padded.resize((padded.size() + 3) / 4 * 4, 0u);
     device.leaves = upload_texels(session, padded.data(), padded.size() / 4, false, storage);
   }
   return device;

@@ -7,7 +7,7 @@ void disc_half_extents(const Splat& splat, float half[3]) {
   // The two other components, not 1 - n_a²: that loses the extent of a disc that is nearly axis-parallel.
   const float* n = splat.normal;
   for (int a = 0; a < 3; ++a)
-    half[a] = splat.radius * std::hypot(n[(a + 1) % 3], n[(a + 2) % 3]);
+    half[a] = splat.radius * std::sqrt(n[(a + 1) % 3] * n[(a + 1) % 3] + n[(a + 2) % 3] * n[(a + 2) % 3]);
 }
 
 namespace {

@@ -1,8 +1,9 @@
 #pragma once
 /// The adaptive N^d octree over splats, before it is packed for a device form (octree/pack).
+#include "octree/build/curve.h"
+#include "octree/pool.h"
 #include "octree/splat.h"
 #include "octree/view.h"
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct TreeOptions {
   unsigned leaf_capacity = 32; ///< a cell that lists no more splats than this, own and extra, is a leaf
   unsigned max_depth = 21;     ///< levels below the root; at most key_levels(axis_bits)
   Listing listing = Listing::overlaps;
+  PointOrder order = PointOrder::morton; ///< of points, leaves and nodes in memory; which cells are divided is the same
 };
 
 /// A node of the tree. Children are stored together, in the order x + N*y + N*N*z.
@@ -33,16 +35,17 @@ struct TreeNode {
 
 struct Tree {
   TreeOptions options;
-  std::vector<std::uint32_t> order; ///< order[k]: input index of the k-th point along the curve
-  std::vector<TreeNode> nodes;      ///< nodes[0] is the root
-  std::vector<std::uint32_t> extra; ///< tree-order indices of extra splats, leaf after leaf
-  unsigned depth = 0;               ///< deepest level in use
+  Pool<std::uint32_t> order;   ///< order[k]: input index of the k-th point along the curve
+  std::vector<TreeNode> nodes; ///< nodes[0] is the root; the packers give them their order in memory
+  Pool<std::uint32_t> extra;   ///< tree-order indices of extra splats, a leaf's together
+  unsigned depth = 0;          ///< deepest level in use
 };
 
 /// Builds the tree over splats whose discs lie in the root cube. A splat belongs to the leaf of its centre and is also
 /// listed, as an extra splat, in every other leaf that its disc touches (method.md §2). A cell is divided while it
 /// lists more than leaf_capacity splats, is above max_depth, and dividing lowers the expected number of splats a ray
-/// tests there. Deterministic. Throws std::invalid_argument on options out of range or more than 2^32-2 splats.
+/// tests there. Works on all cores; the same tree for any number of them. Throws std::invalid_argument on options out
+/// of range or more than 2^32-2 splats, std::length_error when the tree outgrows 32-bit addresses.
 Tree build_tree(View<Splat> splats, const TreeOptions& options);
 
 } // namespace pointgi

@@ -25,12 +25,12 @@ inline OctreeSummary summary_of(const OctreePools& pools) {
 }
 
 /// The point pool, along the curve.
-inline const std::vector<OctreePoint>& points_of(const OctreePools& pools) {
-  return std::visit([](const auto& p) -> const std::vector<OctreePoint>& { return p.points; }, pools);
+inline const Pool<OctreePoint>& points_of(const OctreePools& pools) {
+  return std::visit([](const auto& p) -> const Pool<OctreePoint>& { return p.points; }, pools);
 }
 /// Input index of each point of the pool.
-inline const std::vector<std::uint32_t>& source_of(const OctreePools& pools) {
-  return std::visit([](const auto& p) -> const std::vector<std::uint32_t>& { return p.source; }, pools);
+inline const Pool<std::uint32_t>& source_of(const OctreePools& pools) {
+  return std::visit([](const auto& p) -> const Pool<std::uint32_t>& { return p.source; }, pools);
 }
 
 } // namespace pointgi

@@ -6,11 +6,12 @@
 namespace pointgi {
 
 struct StepPools {
-  std::vector<OctreeNode> nodes;
-  std::vector<std::uint32_t> begin_end;
-  std::vector<OctreePoint> points;   ///< along the curve
-  std::vector<std::uint32_t> source; ///< input index of each point of the pool
+  Pool<OctreeNode> nodes;
+  Pool<std::uint32_t> begin_end;
+  Pool<OctreePoint> points;   ///< along the curve
+  Pool<std::uint32_t> source; ///< input index of each point of the pool
   unsigned axis_bits = 1;
+  PointOrder order = PointOrder::morton; ///< of nodes, Begin-End entries and points
   unsigned depth = 0;
   std::size_t leaves = 0;
   std::size_t extra_splats = 0;
@@ -21,13 +22,14 @@ struct StepPools {
   }
 };
 
-/// Packs a tree over the same splats. Throws std::length_error when the Begin-End pool outgrows 32-bit addresses.
+/// Packs a tree over the same splats, on all cores; the same pools for any number of them. Throws std::length_error
+/// when the Begin-End pool outgrows 32-bit addresses.
 StepPools pack_step(View<Splat> splats, const Tree& tree);
 
 /// Checks every invariant that the traversal relies on: types, child blocks inside the pool and each used once, levels,
-/// own points inside their cell and each in one leaf, Begin-End entries ascending and closed, every leaf that a disc
-/// touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node that breaks one.
-/// Time O(n log n); the tests and debug builds call it.
+/// own points inside their cell and each in one leaf, Begin-End entries along the curve and closed, every leaf that a
+/// disc touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node that breaks
+/// one. Time O(n log n); the tests and debug builds call it.
 void verify(const StepPools& pools);
 
 } // namespace pointgi

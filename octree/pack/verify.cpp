@@ -1,4 +1,3 @@
-#include "octree/build/cell_key.h"
 #include "octree/build/disc_cell.h"
 #include "octree/pack/step_pools.h"
 #include <algorithm>
@@ -12,11 +11,12 @@ namespace {
 
 class Verifier {
 public:
-  explicit Verifier(const StepPools& pools) : pools_(pools), reached_(pools.nodes.size(), false) {}
+  explicit Verifier(const StepPools& pools)
+      : pools_(pools), curve_(pools.order, pools.axis_bits), reached_(pools.nodes.size(), false) {}
 
   void run() {
     if (pools_.nodes.empty() || pools_.begin_end.empty()) fail(0, "the pools are empty");
-    visit(0, Cell{{0.0f, 0.0f, 0.0f}, 1.0f}, 0, {});
+    visit(0, Cell{{0.0f, 0.0f, 0.0f}, 1.0f}, 0, Curve::start, {});
     if (std::find(reached_.begin(), reached_.end(), false) != reached_.end())
       fail(static_cast<std::size_t>(std::find(reached_.begin(), reached_.end(), false) - reached_.begin()),
            "is nobody's child");
@@ -31,7 +31,8 @@ private:
   }
 
   /// `touching`: points owned elsewhere whose discs touch this cell, found without the builder's lists.
-  void visit(std::uint32_t index, const Cell& cell, unsigned level, const std::vector<std::uint32_t>& touching) {
+  void visit(std::uint32_t index, const Cell& cell, unsigned level, unsigned state,
+             const std::vector<std::uint32_t>& touching) {
     if (index >= pools_.nodes.size()) fail(index, "lies outside the pool");
     if (reached_[index]) fail(index, "is reached twice");
     reached_[index] = true;
@@ -45,7 +46,7 @@ private:
       check_leaf(index, node, cell, touching);
       return;
     case NODE_INTERNAL:
-      visit_children(index, node, cell, level, touching);
+      visit_children(index, node, cell, level, state, touching);
       return;
     default:
       fail(index, "has an unknown type");
@@ -74,14 +75,15 @@ private:
     next_entry_ = static_cast<std::uint32_t>(end_entry);
   }
 
-  void visit_children(std::uint32_t index, const OctreeNode& node, const Cell& cell, unsigned level,
+  void visit_children(std::uint32_t index, const OctreeNode& node, const Cell& cell, unsigned level, unsigned state,
                       const std::vector<std::uint32_t>& touching) {
     const unsigned n = 1u << pools_.axis_bits, children = n * n * n;
     if (level >= key_levels(pools_.axis_bits)) fail(index, "lies too deep to have children");
     if (node.extra != next_point_ || node.count > pools_.points.size() - node.extra)
       fail(index, "spans a wrong range of points");
     const std::uint32_t first = node.extra, past = node.extra + node.count;
-    for (unsigned c = 0; c < children; ++c) {
+    for (unsigned place = 0; place < children; ++place) {
+      const unsigned c = curve_.child(state, place);
       const unsigned position[3] = {c % n, c / n % n, c / n / n};
       Cell child{{}, cell.side / static_cast<float>(n)};
       for (int a = 0; a < 3; ++a)
@@ -97,7 +99,7 @@ private:
         keep(p);
       for (std::uint32_t p : touching)
         keep(p);
-      visit(node.address + c, child, level + 1, candidates);
+      visit(node.address + c, child, level + 1, curve_.next(state, place), candidates);
     }
     if (next_point_ != past) fail(index, "has children that do not own its points");
   }
@@ -115,6 +117,7 @@ private:
   }
 
   const StepPools& pools_;
+  Curve curve_;
   std::vector<bool> reached_;
   std::uint32_t next_point_ = 0;
   std::uint32_t next_entry_ = 0;

@@ -1,9 +1,12 @@
 #include "octree/pack/wide_pools.h"
 #include "octree/build/disc_cell.h"
+#include "octree/parallel.h"
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace pointgi {
 
@@ -23,148 +26,190 @@ struct Box {
       high[a] = std::max(high[a], splat.position[a] + half[a] + cell_margin);
     }
   }
-  void add(const Box& other) {
-    for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], other.low[a]);
-      high[a] = std::max(high[a], other.high[a]);
-    }
-  }
 };
 
 struct Range {
   std::uint32_t first, count;
 };
 
+/// Lays nodes and leaves out along the curve on one thread, which is little work, then fills the pools on all.
 class Packer {
 public:
-  Packer(const Tree& tree, WidePools& pools) : tree_(tree), pools_(pools) {}
+  Packer(View<Splat> splats, const Tree& tree, WidePools& pools)
+      : splats_(splats), tree_(tree), curve_(tree.options.order, tree.options.axis_bits), pools_(pools) {}
 
   void run() {
-    pools_.nodes.emplace_back();
     const TreeNode& root = tree_.nodes[0];
+    const std::uint32_t index = new_node(0);
     if (root.first_child != 0)
-      fill_from_tree(0, root, 0);
+      lay_out_children(root, index, 0, Curve::start);
     else
-      fill_from_ranges(0, {{root.first_point, root.count}}, 0);
+      lay_out_range({root.first_point, root.count}, index, 0, 0, Curve::start);
+    pools_.depth = static_cast<unsigned>(levels_.size());
+    pools_.leaves = leaves_.size();
+    pools_.nodes.resize(children_.size());
+    pools_.blocks.resize(blocks_ * WIDE_BLOCK_WORDS(pools_.lanes));
+    pools_.points.resize(splats_.size);
+    pools_.source.resize(splats_.size);
+    parallel_ranges(leaves_.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t leaf = begin; leaf < end; ++leaf)
+        fill_leaf(leaves_[leaf]);
+    });
+    // From the deepest level up, so that the boxes of a node's children are there before its own.
+    for (std::size_t level = levels_.size(); level-- > 0;)
+      parallel_ranges(levels_[level].size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          fill_node(levels_[level][i]);
+      });
   }
 
 private:
+  struct Leaf {
+    Range range;
+    std::uint32_t node, child; ///< whose child it is
+    std::uint32_t first_block;
+  };
+
   std::uint32_t largest_leaf() const { return WIDE_MAX_BLOCKS * pools_.lanes; }
 
-  static void set_child(WideNode& node, unsigned c, const Box& box, std::uint32_t reference) {
-    // An empty child's box is inverted, and finite: infinities would turn into NaN where a ray runs along an axis.
-    constexpr float far = 1e18f;
-    for (int a = 0; a < 3; ++a) {
-      node.low[a][c] = reference != 0 ? box.low[a] : far;
-      node.high[a][c] = reference != 0 ? box.high[a] : -far;
-    }
-    node.child[c] = reference;
-  }
-
-  /// A node for what `contents(index)` fills in; returns its index.
-  template <typename Fill>
-  std::uint32_t new_node(Fill fill) {
-    const auto index = static_cast<std::uint32_t>(pools_.nodes.size());
-    pools_.nodes.emplace_back();
-    fill(index);
+  std::uint32_t new_node(unsigned level) {
+    const auto index = static_cast<std::uint32_t>(children_.size());
+    children_.push_back({});
+    levels_.resize(std::max<std::size_t>(levels_.size(), level + 1));
+    levels_[level].push_back(index);
     return index;
   }
 
-  Box fill_from_tree(std::uint32_t index, const TreeNode& node, unsigned level) {
-    Box all;
-    for (unsigned c = 0; c < WIDE_CHILDREN; ++c) {
+  void lay_out_children(const TreeNode& node, std::uint32_t index, unsigned level, unsigned state) {
+    for (unsigned place = 0; place < WIDE_CHILDREN; ++place) {
+      const unsigned c = curve_.child(state, place), next = curve_.next(state, place);
       const TreeNode& child = tree_.nodes[node.first_child + c];
-      Box box;
-      std::uint32_t reference = 0;
-      if (child.first_child != 0)
-        reference = new_node([&](std::uint32_t i) { box = fill_from_tree(i, child, level + 1); });
-      else if (child.count > 0)
-        reference = leaf_or_nodes({child.first_point, child.count}, level + 1, box);
-      set_child(pools_.nodes[index], c, box, reference);
-      all.add(box);
+      if (child.first_child == 0) {
+        lay_out_range({child.first_point, child.count}, index, c, level, next);
+      } else {
+        children_[index][c] = new_node(level + 1);
+        lay_out_children(child, children_[index][c], level + 1, next);
+      }
     }
-    pools_.depth = std::max(pools_.depth, level + 1);
-    return all;
   }
 
-  Box fill_from_ranges(std::uint32_t index, const std::vector<Range>& ranges, unsigned level) {
-    Box all;
-    for (unsigned c = 0; c < WIDE_CHILDREN; ++c) {
-      Box box;
-      const bool used = c < ranges.size() && ranges[c].count > 0;
-      const std::uint32_t reference = used ? leaf_or_nodes(ranges[c], level + 1, box) : 0;
-      set_child(pools_.nodes[index], c, box, reference);
-      all.add(box);
+  /// Makes a leaf child `c` of a node; more splats than a leaf holds become a node, its children parts of the range.
+  void lay_out_range(Range range, std::uint32_t index, unsigned c, unsigned level, unsigned state) {
+    if (range.count == 0) return;
+    if (range.count <= largest_leaf()) {
+      const std::uint32_t blocks = (range.count + pools_.lanes - 1) / pools_.lanes;
+      if (blocks_ + blocks > WIDE_BLOCK_MASK)
+        throw std::length_error("octree: more leaf blocks than the wide form has addresses for; raise the leaf "
+                                "capacity");
+      children_[index][c] = WIDE_LEAF | blocks << 24 | blocks_;
+      leaves_.push_back({range, index, c, blocks_});
+      blocks_ += blocks;
+      return;
     }
-    pools_.depth = std::max(pools_.depth, level + 1);
-    return all;
-  }
-
-  std::uint32_t leaf_or_nodes(Range range, unsigned level, Box& box) {
-    if (range.count <= largest_leaf()) return leaf(range, box);
-    std::vector<Range> parts;
+    const std::uint32_t cut = children_[index][c] = new_node(level + 1);
     const std::uint32_t part = (range.count + WIDE_CHILDREN - 1) / WIDE_CHILDREN;
-    for (std::uint32_t at = 0; at < range.count; at += part)
-      parts.push_back({range.first + at, std::min(part, range.count - at)});
-    return new_node([&](std::uint32_t i) { box = fill_from_ranges(i, parts, level); });
+    for (std::uint32_t place = 0, at = 0; at < range.count; at += part, ++place)
+      lay_out_range({range.first + at, std::min(part, range.count - at)}, cut, curve_.child(state, place), level + 1,
+                    curve_.next(state, place));
   }
 
-  std::uint32_t leaf(Range range, Box& box) {
+  void fill_leaf(const Leaf& leaf) {
     const unsigned lanes = pools_.lanes;
-    const std::size_t first_block = pools_.block_count();
-    const std::uint32_t blocks = (range.count + lanes - 1) / lanes;
-    if (first_block + blocks > WIDE_BLOCK_MASK)
-      throw std::length_error("octree: more leaf blocks than the wide form has addresses for; raise the leaf capacity");
-    pools_.blocks.resize(pools_.blocks.size() + static_cast<std::size_t>(blocks) * WIDE_BLOCK_WORDS(lanes), 0.0f);
-    for (std::uint32_t k = 0; k < blocks * lanes; ++k) {
-      float* block = &pools_.blocks[(first_block + k / lanes) * WIDE_BLOCK_WORDS(lanes)];
-      const unsigned lane = k % lanes;
-      if (lane == 0) {
-        const std::uint32_t first = range.first + k;
-        std::memcpy(block + WIDE_FIRST(lanes), &first, sizeof first);
+    const std::uint32_t blocks = (leaf.range.count + lanes - 1) / lanes;
+    float* block = &pools_.blocks[static_cast<std::size_t>(leaf.first_block) * WIDE_BLOCK_WORDS(lanes)];
+    Box box;
+    for (std::uint32_t b = 0; b < blocks; ++b, block += WIDE_BLOCK_WORDS(lanes)) {
+      std::fill_n(block, WIDE_BLOCK_WORDS(lanes), 0.0f);
+      const std::uint32_t first = leaf.range.first + b * lanes, past = leaf.range.first + leaf.range.count;
+      std::memcpy(block + WIDE_FIRST(lanes), &first, sizeof first);
+      for (unsigned lane = 0; lane < lanes; ++lane) {
+        if (first + lane >= past) { // nothing is nearer to a centre than -1
+          block[WIDE_RADIUS(lanes) + lane] = -1.0f;
+          block[WIDE_NORMAL(lanes, 0) + lane] = 1.0f;
+          continue;
+        }
+        const Splat& splat = fetch(first + lane);
+        for (unsigned a = 0; a < 3; ++a) {
+          block[WIDE_CENTRE(lanes, a) + lane] = splat.position[a];
+          block[WIDE_NORMAL(lanes, a) + lane] = splat.normal[a];
+        }
+        block[WIDE_RADIUS(lanes) + lane] = splat.radius;
+        box.add(splat);
       }
-      if (k >= range.count) { // nothing is nearer to a centre than -1
-        block[WIDE_RADIUS(lanes) + lane] = -1.0f;
-        block[WIDE_NORMAL(lanes, 0) + lane] = 1.0f;
-        continue;
-      }
-      const Splat& splat = pools_.points[range.first + k];
-      for (unsigned a = 0; a < 3; ++a) {
-        block[WIDE_CENTRE(lanes, a) + lane] = splat.position[a];
-        block[WIDE_NORMAL(lanes, a) + lane] = splat.normal[a];
-      }
-      block[WIDE_RADIUS(lanes) + lane] = splat.radius;
-      box.add(splat);
     }
-    ++pools_.leaves;
-    return WIDE_LEAF | blocks << 24 | static_cast<std::uint32_t>(first_block);
+    set_box(pools_.nodes[leaf.node], leaf.child, box);
   }
 
+  /// Writes a point of the pool.
+  const Splat& fetch(std::uint32_t point) {
+    const std::uint32_t input = tree_.order[point];
+    pools_.source[point] = input;
+    return pools_.points[point] = splats_[input];
+  }
+
+  static void set_box(WideNode& node, unsigned c, const Box& box) {
+    for (int a = 0; a < 3; ++a) {
+      node.low[a][c] = box.low[a];
+      node.high[a][c] = box.high[a];
+    }
+  }
+
+  /// References, and the boxes of those children that are no leaves.
+  void fill_node(std::uint32_t index) {
+    // An empty child's box is inverted, and finite: infinities would turn into NaN where a ray runs along an axis.
+    constexpr float far = 1e18f;
+    constexpr Box empty{{far, far, far}, {-far, -far, -far}};
+    WideNode& node = pools_.nodes[index];
+    for (unsigned c = 0; c < WIDE_CHILDREN; ++c) {
+      const std::uint32_t child = node.child[c] = children_[index][c];
+      if (child == 0)
+        set_box(node, c, empty);
+      else if ((child & WIDE_LEAF) == 0)
+        set_box(node, c, box_of(pools_.nodes[child]));
+    }
+  }
+
+  static Box box_of(const WideNode& node) {
+    Box box;
+    for (unsigned a = 0; a < 3; ++a) {
+      box.low[a] = *std::min_element(node.low[a], node.low[a] + WIDE_CHILDREN);
+      box.high[a] = *std::max_element(node.high[a], node.high[a] + WIDE_CHILDREN);
+    }
+    return box;
+  }
+
+  View<Splat> splats_;
   const Tree& tree_;
+  Curve curve_;
   WidePools& pools_;
+  std::vector<std::array<std::uint32_t, WIDE_CHILDREN>> children_; ///< of each node, as WideNode::child
+  std::vector<std::vector<std::uint32_t>> levels_;                 ///< the nodes of each level
+  std::vector<Leaf> leaves_;                                       ///< along the curve
+  std::uint32_t blocks_ = 0;
 };
 
 class Verifier {
 public:
-  explicit Verifier(const WidePools& pools) : pools_(pools) {}
+  explicit Verifier(const WidePools& pools) : pools_(pools), curve_(pools.order, 1) {}
 
   void run() {
     const float far = std::numeric_limits<float>::infinity();
     Box all;
     std::fill_n(all.low, 3, -far);
     std::fill_n(all.high, 3, far);
-    visit(0, all, 0);
+    visit(0, all, 0, Curve::start);
     if (next_point_ != pools_.points.size()) fail("the leaves do not hold every point");
   }
 
 private:
   [[noreturn]] static void fail(const std::string& what) { throw std::logic_error("octree, wide form: " + what); }
 
-  void visit(std::uint32_t index, const Box& box, unsigned depth) {
+  void visit(std::uint32_t index, const Box& box, unsigned depth, unsigned state) {
     if (index >= pools_.nodes.size() || depth >= WIDE_MAX_DEPTH)
       fail("node " + std::to_string(index) + " lies outside the pool or too deep");
     const WideNode& node = pools_.nodes[index];
-    for (unsigned c = 0; c < WIDE_CHILDREN; ++c) {
+    for (unsigned place = 0; place < WIDE_CHILDREN; ++place) {
+      const unsigned c = curve_.child(state, place);
       Box child;
       for (int a = 0; a < 3; ++a) {
         child.low[a] = std::max(box.low[a], node.low[a][c]);
@@ -178,7 +223,7 @@ private:
       else if (node.child[c] <= index)
         fail("node " + std::to_string(index) + " has a child before it");
       else
-        visit(node.child[c], child, depth + 1);
+        visit(node.child[c], child, depth + 1, curve_.next(state, place));
     }
   }
 
@@ -212,6 +257,7 @@ private:
   }
 
   const WidePools& pools_;
+  Curve curve_;
   std::size_t next_point_ = 0;
 };
 
@@ -223,11 +269,8 @@ WidePools pack_wide(View<Splat> splats, const Tree& tree, unsigned lanes) {
   if (lanes != 8 && lanes != 16) throw std::invalid_argument("octree: the wide form has 8 or 16 lanes");
   WidePools pools;
   pools.lanes = lanes;
-  pools.source = tree.order;
-  pools.points.reserve(splats.size);
-  for (std::uint32_t input : tree.order)
-    pools.points.push_back(splats[input]);
-  Packer(tree, pools).run();
+  pools.order = tree.options.order;
+  Packer(splats, tree, pools).run();
   return pools;
 }
 

@@ -13,7 +13,7 @@ TEST_CASE("every tree obeys the invariants: branching, capacity, depth") {
   const TreeOptions options{axis_bits, capacity, std::min(depth, 21u / axis_bits)};
   const Tree tree = build_tree(splats, options);
   CHECK(tree.depth <= options.max_depth);
-  std::vector<std::uint32_t> order = tree.order;
+  Pool<std::uint32_t> order = tree.order;
   std::sort(order.begin(), order.end());
   for (std::size_t i = 0; i < order.size(); ++i)
     REQUIRE(order[i] == i);

@@ -1,0 +1,26 @@
+#pragma once
+/// A loop over all cores whose result does not depend on how many there are: the body writes only to its own range.
+#include <cstddef>
+
+namespace pointgi {
+
+namespace detail {
+/// Calls call(body, range) for every range in [0, ranges).
+void run_ranges(std::size_t ranges, void (*call)(const void* body, std::size_t range), const void* body);
+} // namespace detail
+
+/// Calls body(begin, end) for consecutive ranges of at most `grain` items that cover [0, n). Ranges run in any order
+/// and at the same time, so one may not read what another writes. The first exception thrown in any of them is rethrown
+/// here. As many threads as OpenMP would take; one inside another such loop.
+template <class Body>
+void parallel_ranges(std::size_t n, std::size_t grain, const Body& body) {
+  const auto call_range = [&](std::size_t range) {
+    const std::size_t begin = range * grain;
+    body(begin, begin + grain < n ? begin + grain : n);
+  };
+  detail::run_ranges((n + grain - 1) / grain,
+                     [](const void* f, std::size_t range) { (*static_cast<decltype(&call_range)>(f))(range); },
+                     &call_range);
+}
+
+} // namespace pointgi
