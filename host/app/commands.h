@@ -26,7 +26,23 @@ struct RenderOptions {
   bool quiet = false;
 };
 
+struct ProfileOptions {
+  std::string input;  ///< scene.toml or cloud; not needed to list or write programs
+  std::string output; ///< folder for profile.json, profile.md and trace.json; empty: the table alone
+  std::string device;
+  std::string filter; ///< parts of variants' names, separated by commas; all must be there
+  int rounds = 5;
+  unsigned seed = 1;
+  std::vector<std::string> overrides; ///< key.path=value
+  bool store = false;                 ///< the winner, even when a filter left variants out
+  bool no_store = false;
+  bool list = false;
+  std::string programs_folder; ///< write every program there instead
+  bool quiet = false;
+};
+
 ExitCode run_render(const RenderOptions& options);
+ExitCode run_profile(const ProfileOptions& options);
 ExitCode run_info(const std::string& file);
 ExitCode run_devices(bool json, bool check, const std::string& device);
 

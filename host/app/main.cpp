@@ -110,10 +110,39 @@ int run(int argc, char** argv) {
       ->take_all()
       ->expected(1);
   render_command->add_option("--stats", render.stats_file, "write figures of the run to this JSON file");
-  render_command->add_option("--trace", render.trace_file, "write the stages as a Chrome trace to this JSON file");
+  render_command->add_option("--trace", render.trace_file,
+                             "write stages and kernels as a Chrome trace to this JSON file");
   render_command->add_option("--pixelbounds", render.pixel_bounds,
                              "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
   render_command->add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
+
+  ProfileOptions profile;
+  CLI::App* profile_command =
+      app.add_subcommand("profile", "time every kernel variant on a scene; render uses the best");
+  profile_command->add_option("SCENE.toml|CLOUD.ply", profile.input, "what to measure on");
+  profile_command->add_option(
+      "-o,--output", profile.output,
+      "folder for profile.json, profile.md (the table) and trace.json (Chrome trace); default: the table alone");
+  profile_command->add_option("--device", profile.device,
+                              "index, part of a name, cpu or gpu; default: a GPU if there is one");
+  profile_command->add_option("--threads", common.threads, "threads of the host and of a CPU device")
+      ->check(CLI::Range(1, 1024));
+  profile_command->add_option("--filter", profile.filter,
+                              "only variants whose names contain this; several parts, separated by commas, must all "
+                              "be there (wide,leaf64); the best is then stored only with --store");
+  profile_command->add_option("--rounds", profile.rounds, "timed launches of each (default 5)")
+      ->check(CLI::Range(1, 1000));
+  profile_command->add_option("--seed", profile.seed, "seed of the bounced rays (default 1)");
+  profile_command->add_option("--set", profile.overrides, "a value of the scene file, as for render; may repeat")
+      ->take_all()
+      ->expected(1);
+  CLI::Option* store = profile_command->add_flag(
+      "--store", profile.store, "keep the best, for render to find, even when --filter left variants out");
+  profile_command->add_flag("--no-store", profile.no_store, "do not keep the best")->excludes(store);
+  profile_command->add_flag("--list", profile.list, "only list the variants, what they need, and which are valid here");
+  profile_command->add_option("--write-programs", profile.programs_folder,
+                              "only write each distinct program of all variants to this folder, with an index.tsv: "
+                              "file, source, kinds of device, options; needs no device");
 
   std::string info_file;
   CLI::App* info_command = app.add_subcommand("info", "what is in a cloud or scene");
@@ -142,6 +171,9 @@ int run(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then a write error, reported as one
   render.device = environment_or(render.device, "POINTGI_DEVICE");
   if (render_command->parsed()) return code_of(run_render(render));
+  profile.device = environment_or(profile.device, "POINTGI_DEVICE");
+  profile.quiet = render.quiet;
+  if (profile_command->parsed()) return code_of(run_profile(profile));
   if (info_command->parsed()) return code_of(run_info(info_file));
   return code_of(run_devices(json, check, checked_device));
 }

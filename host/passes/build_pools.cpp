@@ -10,6 +10,7 @@ OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant
   options.axis_bits = variant.axis_bits;
   options.leaf_capacity = variant.leaf_capacity;
   options.max_depth = std::min(variant.max_depth, key_levels(variant.axis_bits));
+  options.order = variant.order;
   options.listing = wide ? Listing::centres : Listing::overlaps;
   const Tree tree = build_tree(splats, options);
   OctreePools pools = wide ? OctreePools(pack_wide(splats, tree, variant.lanes)) : OctreePools(pack_step(splats, tree));

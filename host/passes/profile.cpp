@@ -49,8 +49,14 @@ const VariantProfile* Profile::winner() const {
 
 namespace {
 
-/// The reference is timed anew after so much of the device's time: other work on the machine comes and goes.
-constexpr double reference_interval = 0.5;
+/// The reference is timed anew after so much of the device's time, and whenever the kernel changes: other work on the
+/// machine comes and goes, and pairs that are close in time see the same of it.
+constexpr double reference_interval = 0.15;
+
+/// Launches are repeated in a round until they take half as long as the reference's: what a busy machine's scheduler
+/// takes from a launch of milliseconds is all or nothing.
+constexpr double repeated_share = 0.5;
+constexpr int most_repeats = 16;
 
 /// One launch that variants share when nothing in it differs between them.
 struct Measured {
@@ -58,6 +64,7 @@ struct Measured {
   TraversalVariant variant; ///< the first of them
   std::string pools;
   std::string failure;
+  int repeats = 1; ///< launches a round
   KernelProfile times;
 };
 
@@ -114,7 +121,7 @@ private:
         const auto kernel = static_cast<ProfiledKernel>(k);
         const auto [at, is_new] = launch_of.emplace(launch_key(kernel, v), measured_.size());
         if (is_new) {
-          measured_.push_back({kernel, v, key, {}, {}});
+          measured_.push_back({kernel, v, key, {}, 1, {}});
           groups_[group->second].measured.push_back(at->second);
         }
         launches_of_.back()[k] = at->second;
@@ -147,7 +154,10 @@ private:
           fail(measured_[m], error);
       }
     }
-    std::sort(work.begin(), work.end()); // neighbours in the list, not in a tree, run one after another
+    // A kernel's launches together, neighbours of the list one after another.
+    std::sort(work.begin(), work.end(), [&](std::size_t a, std::size_t b) {
+      return std::make_pair(measured_[a].kernel, a) < std::make_pair(measured_[b].kernel, b);
+    });
     for (int round = 0; round <= request_.rounds && !profile_.interrupted; ++round)
       run_round(work, round);
     return end;
@@ -158,9 +168,9 @@ private:
     const std::size_t shift = work.empty() ? 0 : static_cast<std::size_t>(round) * work.size() / (request_.rounds + 1);
     for (std::size_t i = 0; i < work.size() && !stopped(); ++i) {
       Measured& m = measured_[work[(i + shift) % work.size()]];
-      if (round > 0 && since_reference >= reference_interval) {
-        for (std::size_t k = 0; k < profiled_kernels; ++k)
-          reference_seconds_[k] = bench_.launch(static_cast<ProfiledKernel>(k), reference_, reference_pools_);
+      if (round > 0 && (since_reference >= reference_interval || m.kernel != reference_kernel_)) {
+        reference_seconds_ = bench_.launch(m.kernel, reference_, reference_pools_);
+        reference_kernel_ = m.kernel;
         since_reference = 0.0;
       }
       if (m.failure.empty()) since_reference += run_one(m, round);
@@ -178,17 +188,24 @@ private:
         m.times.ties = d.ties;
         m.times.rays = bench_.rays(m.kernel);
         m.times.bytes = bench_.bytes(m.kernel, pools);
+        const double once = std::max(bench_.launch(m.kernel, m.variant, pools), 1e-6);
+        m.repeats = std::clamp(static_cast<int>(repeated_share * request_.launch_seconds / once), 1, most_repeats);
         return 0.0;
       }
-      const double seconds = bench_.launch(m.kernel, m.variant, pools);
+      double total = 0.0;
+      for (int k = 0; k < m.repeats; ++k)
+        total += bench_.launch(m.kernel, m.variant, pools);
+      const double seconds = total / m.repeats;
       m.times.seconds.push_back(seconds);
-      m.times.speedup.push_back(reference_seconds_[static_cast<std::size_t>(m.kernel)] / std::max(seconds, 1e-9));
-      return seconds;
+      m.times.speedup.push_back(is_reference(m) ? 1.0 : reference_seconds_ / std::max(seconds, 1e-9));
+      return total;
     } catch (const Error& error) {
       fail(m, error);
       return 0.0;
     }
   }
+
+  bool is_reference(const Measured& m) const { return name_of(m.variant) == name_of(reference_); }
 
   static void fail(Measured& m, const Error& error) {
     const std::string text = error.what();
@@ -220,7 +237,9 @@ private:
   const std::function<bool()>& stop_;
   TraversalVariant reference_;
   ProfiledPools reference_pools_;
-  std::array<double, profiled_kernels> reference_seconds_{};
+  ProfiledKernel reference_kernel_ =
+      ProfiledKernel::eye; ///< the last one that the reference was timed on, and its time
+  double reference_seconds_ = 0.0;
   std::vector<Measured> measured_;
   std::vector<Group> groups_;
   std::vector<std::array<std::size_t, profiled_kernels>> launches_of_; ///< of each variant: indices into measured_

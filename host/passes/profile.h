@@ -28,13 +28,13 @@ struct ProfileRequest {
   std::vector<TraversalVariant> variants; ///< the reference is measured whether it is among them or not
   int rounds = 5;                         ///< timed ones; one more before them warms up
   unsigned seed = 1;
-  double launch_seconds = 0.04;                      ///< that a launch of the reference shall take
+  double launch_seconds = 0.04; ///< that a launch of the reference shall take; shorter ones of others are repeated
   std::uint64_t pool_bytes = std::uint64_t{1} << 30; ///< pools held on the device at a time
 };
 
 /// One kernel of one variant.
 struct KernelProfile {
-  std::vector<double> seconds; ///< device seconds of each timed round
+  std::vector<double> seconds; ///< device seconds of a launch in each timed round, a mean where launches are short
   std::vector<double> speedup; ///< of each: the reference's last seconds before it, over these
   std::uint64_t rays = 0;
   std::uint64_t bytes = 0; ///< the least that must move: rays in, answers out, the pools once

@@ -33,15 +33,6 @@ std::string slug(const std::string& text) {
   return result;
 }
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &local);
-  return text;
-}
-
 /// What the scene says over what a layer says.
 TraversalVariant merged(const TraversalSettings& t, const OctreeSettings& o, const TraversalVariant& layer) {
   TraversalVariant v = layer;
@@ -70,6 +61,15 @@ bool says_something(const TraversalSettings& t, const OctreeSettings& o) {
 }
 
 } // namespace
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &local);
+  return text;
+}
 
 std::string winner_path(const DeviceInfo& device) {
   const std::string folder = cache_folder();

@@ -12,6 +12,9 @@ struct StoredWinner {
   std::string warning; ///< why a file that is there is not used; it is never trusted half
 };
 
+/// "2025-01-31", here and now.
+std::string today();
+
 /// Where the winner of this device and driver is kept: below the cache folder; empty when there is none.
 std::string winner_path(const DeviceInfo& device);
 

@@ -125,7 +125,7 @@ DeviceInfo ideal_device(bool cpu) {
 std::vector<ProgramUse> all_programs() {
   std::vector<TraversalVariant> variants = all_variants();
   for (TraversalVariant v : all_variants())
-    if (v.form == TraversalForm::step && plain_but_for_kernel(v)) {
+    if (v.form == TraversalForm::step && !v.fast_math && plain_but_for_kernel(v)) {
       v.stepping = Stepping::absolute_delta;
       variants.push_back(v);
     }

@@ -1,6 +1,7 @@
 #pragma once
 /// The scene as the file describes it, in world units and doubles: nothing loaded, nothing sampled yet.
 #include "host/cloud/complete.h"
+#include "octree/build/curve.h"
 #include <Eigen/Core>
 #include <optional>
 #include <string>
@@ -129,9 +130,6 @@ struct CausticSettings {
   std::string power = "unbiased";
   std::optional<SourcePlace> place;
 };
-
-/// Order of the splats along the curve through the octree's cells.
-enum class PointOrder { morton, hilbert };
 
 /// Form of the octree; the picture does not depend on it beyond rounding. What is left open is chosen for the device
 /// (host/passes/tuned.h).
