@@ -41,7 +41,7 @@ struct Loop {
 
 /// Threads that sleep between loops. The caller waits only for those that have joined its loop: at the barrier of an
 /// OpenMP loop it would wait for every thread to be given a core, and where other programs keep the cores busy that
-/// made building an octree of 50,000 splats, some 20 loops, 50 times slower.
+/// made building an octree of 50,000 splats, some 20 loops, tens of times slower.
 class Workers {
 public:
   ~Workers() {

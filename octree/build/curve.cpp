@@ -7,9 +7,8 @@ Curve::Curve(PointOrder order, unsigned axis_bits) : axis_bits_(axis_bits), hilb
   if (hilbert_ && axis_bits != 1) throw std::invalid_argument("octree: Hilbert's order is there for N = 2 only");
 }
 
-std::uint64_t Curve::key(CellCoordinates cell) const {
-  const std::uint64_t children = cell_key(cell, axis_bits_);
-  if (!hilbert_) return children;
+std::uint64_t Curve::hilbert_key(CellCoordinates cell) {
+  const std::uint64_t children = morton_key(cell);
   std::uint64_t key = 0;
   unsigned state = start;
   for (unsigned level = key_levels(1); level-- > 0;) {

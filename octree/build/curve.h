@@ -32,9 +32,10 @@ struct HilbertTable {
 private:
   static constexpr unsigned gray(unsigned i) { return i ^ (i >> 1); }
   static constexpr unsigned rotate_left(unsigned bits, unsigned by) { return ((bits << by) | (bits >> (3 - by))) & 7u; }
-  /// The axis along which the Gray code steps from i to i + 1: the number of ones that i ends in.
-  static constexpr unsigned step_axis(unsigned i) { return (i & 1u) == 0 ? 0 : (i & 2u) == 0 ? 1 : 2; }
+  /// The axis along which the Gray code steps from i to i + 1: the number of ones that i ends in, modulo 3.
+  static constexpr unsigned step_axis(unsigned i) { return i % 2 == 0 || i == 7 ? 0 : i % 4 == 1 ? 1 : 2; }
 
+  /// `w`, the paper's name, is the place along the curve.
   constexpr void set(unsigned state, unsigned w) {
     const unsigned entry = state / 3, turn = (state % 3 + 1) % 3;
     const unsigned child_entry = w == 0 ? 0 : gray((w - 1) / 2 * 2);
@@ -42,8 +43,8 @@ private:
     const unsigned c = rotate_left(gray(w), turn) ^ entry;
     child[state][w] = static_cast<std::uint8_t>(c);
     place[state][c] = static_cast<std::uint8_t>(w);
-    next[state][w] = static_cast<std::uint8_t>(3 * (entry ^ rotate_left(child_entry, turn)) +
-                                               (state % 3 + child_direction % 3 + 1) % 3);
+    next[state][w] =
+        static_cast<std::uint8_t>(3 * (entry ^ rotate_left(child_entry, turn)) + (state % 3 + child_direction + 1) % 3);
   }
 };
 
@@ -66,9 +67,13 @@ public:
   /// The state of that child.
   unsigned next(unsigned state, unsigned place) const { return hilbert_ ? detail::hilbert.next[state][place] : state; }
   /// The key whose digits, from the root down, are the places along the curve; digits as those of cell_key.
-  std::uint64_t key(CellCoordinates cell) const;
+  std::uint64_t key(CellCoordinates cell) const {
+    return hilbert_ ? hilbert_key(cell) : axis_bits_ == 1 ? morton_key(cell) : cell_key(cell, axis_bits_);
+  }
 
 private:
+  static std::uint64_t hilbert_key(CellCoordinates cell);
+
   unsigned axis_bits_;
   bool hilbert_;
 };

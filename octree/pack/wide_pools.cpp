@@ -117,6 +117,11 @@ private:
     const unsigned lanes = pools_.lanes;
     const std::uint32_t blocks = (leaf.range.count + lanes - 1) / lanes;
     float* block = &pools_.blocks[static_cast<std::size_t>(leaf.first_block) * WIDE_BLOCK_WORDS(lanes)];
+    // Apart from the rest, because of what follows a processor waits for each splat, and here fetches many at a time.
+    for (std::uint32_t point = leaf.range.first; point < leaf.range.first + leaf.range.count; ++point) {
+      pools_.source[point] = tree_.order[point];
+      pools_.points[point] = splats_[tree_.order[point]];
+    }
     Box box;
     for (std::uint32_t b = 0; b < blocks; ++b, block += WIDE_BLOCK_WORDS(lanes)) {
       std::fill_n(block, WIDE_BLOCK_WORDS(lanes), 0.0f);
@@ -128,7 +133,7 @@ private:
           block[WIDE_NORMAL(lanes, 0) + lane] = 1.0f;
           continue;
         }
-        const Splat& splat = fetch(first + lane);
+        const Splat& splat = pools_.points[first + lane];
         for (unsigned a = 0; a < 3; ++a) {
           block[WIDE_CENTRE(lanes, a) + lane] = splat.position[a];
           block[WIDE_NORMAL(lanes, a) + lane] = splat.normal[a];
@@ -138,13 +143,6 @@ private:
       }
     }
     set_box(pools_.nodes[leaf.node], leaf.child, box);
-  }
-
-  /// Writes a point of the pool.
-  const Splat& fetch(std::uint32_t point) {
-    const std::uint32_t input = tree_.order[point];
-    pools_.source[point] = input;
-    return pools_.points[point] = splats_[input];
   }
 
   static void set_box(WideNode& node, unsigned c, const Box& box) {

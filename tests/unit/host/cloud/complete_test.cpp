@@ -49,7 +49,8 @@ PointCloud ball_mesh(int rings) {
 
 } // namespace
 
-TEST_CASE("bad points are dropped, counted and reported, and the rest is as if they had never been", "[cloud][complete]") {
+TEST_CASE("bad points are dropped, counted and reported, and the rest is as if they had never been",
+          "[cloud][complete]") {
   PointCloud clean = fibonacci_sphere(3000);
   clean.radius.assign(3000, 0.05f);
   clean.colour.assign(3000, Vector3f(0.1f, 0.2f, 0.3f));

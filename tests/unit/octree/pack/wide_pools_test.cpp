@@ -1,4 +1,4 @@
-#include "octree/pack/wide_pools.h"
+#include "octree/pack/pools.h"
 #include "tests/support/clouds.h"
 #include <catch2/catch.hpp>
 
@@ -7,8 +7,10 @@ using namespace pointgi::test;
 
 namespace {
 
-WidePools pack(const std::vector<Splat>& splats, unsigned leaf_capacity, unsigned lanes) {
+WidePools pack(const std::vector<Splat>& splats, unsigned leaf_capacity, unsigned lanes,
+               PointOrder order = PointOrder::morton) {
   TreeOptions options;
+  options.order = order;
   options.leaf_capacity = leaf_capacity;
   options.listing = Listing::centres;
   return pack_wide(splats, build_tree(splats, options), lanes);
@@ -18,12 +20,13 @@ WidePools pack(const std::vector<Splat>& splats, unsigned leaf_capacity, unsigne
 
 TEST_CASE("the wide form obeys its invariants") {
   const unsigned lanes = GENERATE(8u, 16u), capacity = GENERATE(1u, 8u, 64u);
-  CHECK_NOTHROW(verify(pack(mixed_splats(), capacity, lanes)));
-  CHECK_NOTHROW(verify(pack({}, capacity, lanes)));
-  CHECK_NOTHROW(verify(pack({make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f)}, capacity, lanes)));
+  const auto order = GENERATE(PointOrder::morton, PointOrder::hilbert);
+  CHECK_NOTHROW(verify(pack(mixed_splats(), capacity, lanes, order)));
+  CHECK_NOTHROW(verify(pack({}, capacity, lanes, order)));
+  CHECK_NOTHROW(verify(pack({make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f)}, capacity, lanes, order)));
   // More in one place than a leaf's reference can count: cut into nodes, within the traversal's stack.
   CHECK_NOTHROW(
-      verify(pack(std::vector<Splat>(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 0, 1e-9f)), capacity, lanes)));
+      verify(pack(std::vector<Splat>(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 0, 1e-9f)), capacity, lanes, order)));
 }
 
 TEST_CASE("the wide form's verifier finds each planted fault") {
@@ -40,6 +43,9 @@ TEST_CASE("the wide form's verifier finds each planted fault") {
   SECTION("a lost leaf") {
     pools.nodes.back().child[0] = 0;
   }
+  SECTION("points along another curve") {
+    pools.order = PointOrder::hilbert;
+  }
   SECTION("a point that moved") {
     pools.points[300].position[1] += 0.01f;
   }
@@ -52,7 +58,9 @@ TEST_CASE("the wide form's verifier finds each planted fault") {
 TEST_CASE("the wide form takes at most 90 bytes a splat at its default capacity") {
   const auto splats = sphere_splats(100'000);
   // 48 of the point itself, 32 a lane of which four in five are used, and a node for every 80 splats.
-  CHECK(static_cast<double>(pack(splats, 64, 8).bytes()) / static_cast<double>(splats.size()) <= 90.0);
+  const OctreeSummary octree = summary_of(pack(splats, 64, 8));
+  CHECK(octree.points == splats.size());
+  CHECK(static_cast<double>(octree.bytes) / static_cast<double>(octree.points) <= 90.0);
 }
 
 TEST_CASE("trees that the wide form cannot take are refused") {
