@@ -9,13 +9,18 @@ using namespace pointgi::test;
 
 namespace {
 
-/// A ball in the root cube under a lamp, a cloud of discs about it so that bounced rays meet something.
+/// A ball under a lamp with a small one before it, so that bounced rays meet something.
 struct Ball {
   Scene scene;
   Frame frame;
-  std::vector<Splat> splats = mixed_splats();
+  std::vector<Splat> splats = sphere_splats(900);
 
   Ball() {
+    for (Splat small : sphere_splats(300, 0.1f)) {
+      for (float& x : small.position)
+        x += 0.27f;
+      splats.push_back(small);
+    }
     scene.render.width = 64;
     scene.render.height = 48;
     scene.camera.position = {0.5, 0.5, 2.5};
