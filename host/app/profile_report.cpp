@@ -264,7 +264,7 @@ std::string variant_listing(const std::vector<TraversalVariant>& variants, const
     const std::string why = why_not(v, device);
     valid += why.empty();
     char line[160];
-    std::snprintf(line, sizeof line, "  %-52s needs %-10s ", name_of(v).c_str(), needs.c_str());
+    std::snprintf(line, sizeof line, "  %-52s needs %-12s ", name_of(v).c_str(), needs.c_str());
     text += line + (why.empty() ? std::string("valid") : "not here: " + why) + "\n";
   }
   return text + std::to_string(valid) + " of " + std::to_string(variants.size()) + " are valid on this device\n";

@@ -46,6 +46,13 @@ double seconds_of(const Work& work) {
   return static_cast<double>(end.tv_sec - start.tv_sec) + 1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec);
 }
 
+/// The better of two runs in a row: the first finds the caches full of what the other side left there.
+template <typename Work>
+double warm_seconds_of(const Work& work) {
+  const double first = seconds_of(work);
+  return std::min(first, seconds_of(work));
+}
+
 struct Tracer {
   Session& session;
   DevicePools pools;
@@ -121,10 +128,10 @@ Pairs measure_coherent(Tracer& tracer, const EmbreePeer& peer, const std::vector
   ours(); // warm
   Pairs result;
   for (int k = 0; k < pairs; ++k) {
-    result.ours.push_back(seconds_of(ours));
-    result.theirs.push_back(std::min({seconds_of([&] { peer.closest_packet16(as_packets, peer_packet_answers); }),
-                                      seconds_of([&] { peer.closest_stream32(rays, answers); }),
-                                      seconds_of([&] { peer.closest_single(rays, answers); })}));
+    result.ours.push_back(warm_seconds_of(ours));
+    result.theirs.push_back(std::min({warm_seconds_of([&] { peer.closest_packet16(as_packets, peer_packet_answers); }),
+                                      warm_seconds_of([&] { peer.closest_stream32(rays, answers); }),
+                                      warm_seconds_of([&] { peer.closest_single(rays, answers); })}));
   }
   const auto hits = std::count_if(answers.begin(), answers.end(), [](const auto& a) { return a.splat != NO_SPLAT; });
   hit_share = static_cast<double>(hits) / static_cast<double>(rays.size());
@@ -140,10 +147,10 @@ std::array<Pairs, 2> measure_incoherent(Tracer& tracer, const EmbreePeer& peer, 
   std::vector<RayAnswer> answers(rays.size());
   std::array<Pairs, 2> result;
   for (int k = 0; k < pairs; ++k) {
-    result[0].ours.push_back(seconds_of([&] { tracer.closest(on_device, device_answers); }));
-    result[0].theirs.push_back(seconds_of([&] { peer.closest_single(rays, answers); }));
-    result[1].ours.push_back(seconds_of([&] { tracer.any(on_device, blocked); }));
-    result[1].theirs.push_back(seconds_of([&] { peer.any_single(rays); }));
+    result[0].ours.push_back(warm_seconds_of([&] { tracer.closest(on_device, device_answers); }));
+    result[0].theirs.push_back(warm_seconds_of([&] { peer.closest_single(rays, answers); }));
+    result[1].ours.push_back(warm_seconds_of([&] { tracer.any(on_device, blocked); }));
+    result[1].theirs.push_back(warm_seconds_of([&] { peer.any_single(rays); }));
   }
   return result;
 }

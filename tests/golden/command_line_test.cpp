@@ -167,11 +167,12 @@ TEST_CASE("an interrupted render keeps a partial picture, and a killed one keeps
   const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("x.exr");
   const std::string slow = "render " + scene + " --size 600x2000 --spp 128 -o " + out;
   REQUIRE(run_program("render " + scene + " -o " + out).code == 0);
+  // --foreground: the program gets the signal once; a second one would end it at once.
   // Whenever the signal comes, the old picture or a whole partial one is there.
   const Run killed = run_program(slow, "timeout -s KILL 2");
   CHECK(killed.code != 0);
   CHECK(read_exr(out).width == 40);
-  const Run interrupted = run_program(slow, "timeout --preserve-status -s INT 4");
+  const Run interrupted = run_program(slow, "timeout --foreground --preserve-status -s INT 4");
   CHECK(interrupted.code == 130);
   CHECK_THAT(interrupted.err, Contains("interrupted"));
   const Picture partial = read_exr(out);

@@ -113,6 +113,20 @@ direct_light = "radiosity"
 photons = 100000000
 gather_k = 80
 power = "equal"
+[octree]
+branching = 4
+order = "hilbert"
+leaf_capacity = 12
+max_depth = 9
+[traversal]
+form = "wide"
+grouping = "packet"
+group = "16x4"
+lanes = 16
+storage = "image2d"
+stepping = "absolute_delta"
+step_delta = 0.25
+fast_math = true
 )";
 
 std::string with_line(std::string text, const std::string& section, const std::string& line) {
@@ -153,6 +167,30 @@ TEST_CASE("every key of the settings arrives", "[scene]") {
   CHECK(scene.caustics.gather_k == 80);
   CHECK(scene.caustics.power == "equal");
   CHECK(scene.caustics.place.has_value());
+  CHECK(scene.octree.branching == 4u);
+  CHECK(scene.octree.order == PointOrder::hilbert);
+  CHECK(scene.octree.leaf_capacity == 12u);
+  CHECK(scene.octree.max_depth == 9);
+  CHECK(scene.traversal.form == TraversalForm::wide);
+  CHECK(scene.traversal.grouping == RayGrouping::packet);
+  CHECK(scene.traversal.group == WorkGroup{16, 4});
+  CHECK(scene.traversal.lanes == 16u);
+  CHECK(scene.traversal.storage == PoolStorage::image2d);
+  CHECK(scene.traversal.stepping == Stepping::absolute_delta);
+  CHECK(scene.traversal.step_delta == 0.25);
+  CHECK(scene.traversal.fast_math);
+}
+
+TEST_CASE("what is called auto is left open, as what is left out", "[scene]") {
+  const SceneFolder folder;
+  const std::string autos = "[octree]\norder = \"auto\"\n[traversal]\nform = \"auto\"\ngrouping = \"auto\"\n"
+                            "group = \"auto\"\nstorage = \"auto\"\n";
+  for (const std::string& more : {std::string(), autos}) {
+    const Scene scene = folder.load(small_scene + more);
+    CHECK_FALSE((scene.octree.branching || scene.octree.order || scene.octree.leaf_capacity));
+    const TraversalSettings& t = scene.traversal;
+    CHECK_FALSE((t.form || t.grouping || t.group || t.lanes || t.storage || t.fast_math));
+  }
 }
 
 TEST_CASE("every key of the materials arrives", "[scene]") {

@@ -1,0 +1,111 @@
+#include "host/passes/profile.h"
+#include "host/scene/lighting.h"
+#include "tests/support/clouds.h"
+#include "tests/support/device.h"
+#include <catch2/catch.hpp>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+/// A ball under a lamp with a small one before it, so that bounced rays meet something.
+struct Ball {
+  Scene scene;
+  Frame frame;
+  std::vector<Splat> splats = sphere_splats(900);
+
+  Ball() {
+    for (Splat small : sphere_splats(300, 0.1f)) {
+      for (float& x : small.position)
+        x += 0.27f;
+      splats.push_back(small);
+    }
+    scene.render.width = 64;
+    scene.render.height = 48;
+    scene.camera.position = {0.5, 0.5, 2.5};
+    scene.camera.look_at = {0.5, 0.5, 0.5};
+    scene.materials.emplace_back();
+    scene.lights.push_back({PointLight{{0.9, 0.9, 2.0}, {1.0, 1.0, 1.0}}, {}});
+  }
+
+  ProfileRequest request() const {
+    ProfileRequest request{scene, frame, splats, {}};
+    request.rounds = 1;
+    request.launch_seconds = 1e-3;
+    return request;
+  }
+};
+
+/// A few that differ in everything; the reference is not among them.
+std::vector<TraversalVariant> some_variants() {
+  std::vector<TraversalVariant> some;
+  for (const TraversalVariant& v : all_variants()) {
+    const std::string name = name_of(v);
+    for (const char* wanted : {"step-n4-buffer-morton-leaf16-ray-64x1", "step-n2-image2d-hilbert-leaf64-ray-32x1",
+                               "wide-lanes8-hilbert-leaf32-packet-16x4", "wide-lanes16-morton-leaf64-ray-8x4"})
+      if (name == wanted && why_not(v, session().info()).empty()) some.push_back(v);
+  }
+  return some;
+}
+
+Profile run(
+    const ProfileRequest& request, const std::function<bool()>& stop = [] { return false; }) {
+  return profile_variants(
+      session(), request, [](double) {}, stop);
+}
+
+} // namespace
+
+TEST_CASE("a profile measures the reference and all that is asked for, and finds nothing wrong with them") {
+  const Ball ball;
+  ProfileRequest request = ball.request();
+  request.variants = some_variants();
+  for (const std::uint64_t bytes : {request.pool_bytes, std::uint64_t{1}}) { // all at a time, and one by one
+    request.pool_bytes = bytes;
+    const Profile profile = run(request);
+    REQUIRE(profile.variants.size() == request.variants.size() + 1);
+    CHECK(name_of(profile.variants[0].variant) == name_of(reference_variant()));
+    CHECK(profile.variants[0].speedup() == 1.0);
+    CHECK_FALSE(profile.interrupted);
+    CHECK(profile.proved_rays > 0);
+    for (const VariantProfile& v : profile.variants) {
+      CAPTURE(name_of(v.variant), v.failure);
+      CHECK(v.complete());
+      CHECK_FALSE(v.wrong());
+      CHECK(v.pool_bytes > 0);
+    }
+    CHECK(profile.ranking().size() == profile.variants.size());
+    CHECK(profile.winner() != nullptr);
+  }
+}
+
+TEST_CASE("a profile that is stopped tells what is complete and what is not") {
+  const Ball ball;
+  ProfileRequest request = ball.request();
+  request.variants = some_variants();
+  request.rounds = 3;
+  for (const int calls : {0, 3, 30, 45}) {
+    int left = calls;
+    const Profile profile = run(request, [&] { return left-- <= 0; });
+    CHECK(profile.interrupted);
+    for (const std::size_t i : profile.ranking())
+      CHECK(profile.variants[i].complete());
+    if (calls == 0) CHECK(profile.winner() == nullptr);
+  }
+}
+
+TEST_CASE("a variant that the device cannot take is told of, and the others are measured") {
+  const Ball ball;
+  ProfileRequest request = ball.request();
+  request.variants = {plain_variant(TraversalForm::wide)};
+  TraversalVariant large = plain_variant(TraversalForm::step);
+  large.group = {1024, 1024};
+  request.variants.push_back(large);
+  const Profile profile = run(request);
+  REQUIRE(profile.variants.size() == 3);
+  CHECK(profile.variants[1].complete());
+  CHECK_FALSE(profile.variants[2].complete());
+  CHECK_FALSE(profile.variants[2].failure.empty());
+  CHECK(profile.ranking().size() == 2);
+}
