@@ -20,6 +20,14 @@ std::string group_options(WorkGroup group) {
   return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
 }
 
+std::string feature_options(const SceneFeatures& features) {
+  std::string options;
+  if (features.delta_lights) options += " -D HAS_DELTA_LIGHTS";
+  if (features.emitters) options += " -D HAS_EMITTERS";
+  if (features.environment) options += " -D HAS_ENVIRONMENT";
+  return options;
+}
+
 } // namespace
 
 std::string name_of(const TraversalVariant& v) {
@@ -58,11 +66,11 @@ Program eye_rays_program(const TraversalVariant& variant) {
 }
 
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features) {
-  std::string options = group_options(variant.group);
-  if (features.delta_lights) options += " -D HAS_DELTA_LIGHTS";
-  if (features.emitters) options += " -D HAS_EMITTERS";
-  if (features.environment) options += " -D HAS_ENVIRONMENT";
-  return program(variant, "render/shade.cl", options);
+  return program(variant, "render/shade.cl", group_options(variant.group) + feature_options(features));
+}
+
+Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features) {
+  return program(variant, "fmm/direct_irradiance.cl", feature_options(features));
 }
 
 } // namespace pointgi

@@ -49,6 +49,8 @@ Program trace_program(const TraversalVariant& variant);
 Program eye_rays_program(const TraversalVariant& variant);
 /// The picture from these hits, shade_pixels: a pixel a half or whole work-group.
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features);
+/// Direct irradiance of the points, direct_irradiance_of_points.
+Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features);
 
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
