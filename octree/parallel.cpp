@@ -5,6 +5,7 @@
 #include <exception>
 #include <mutex>
 #include <omp.h>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -56,8 +57,11 @@ public:
 
   void run(Loop& loop) {
     std::unique_lock<std::mutex> lock(mutex_);
-    while (threads_.size() < loop.seats)
-      threads_.emplace_back([this] { serve(); });
+    try {
+      while (threads_.size() < loop.seats)
+        threads_.emplace_back([this] { serve(); });
+    } catch (const std::system_error&) { // no more to be had: those that are there do it
+    }
     loop_ = &loop;
     lock.unlock();
     wake_.notify_all();

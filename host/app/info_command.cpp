@@ -61,7 +61,7 @@ ExitCode run_info(const std::string& file) {
   }
   const Frame frame = frame_of(cloud);
   const std::vector<Splat> placed = place_in_cube(splats, frame);
-  // No device is opened for this: the form told of is a CPU device's, unless the scene says.
+  // No device is opened for this: the form told of is the default of CPU devices, unless the scene says.
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, ideal_device(true)).variant;
   const OctreeSummary octree = summary_of(build_pools(placed, variant));
   std::printf("  splats      %zu\n", cloud.size());

@@ -164,7 +164,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::ExtrasError& error) {
     throw Error(ExitCode::usage, unknown_words(app));
   } catch (const CLI::ParseError& error) {
-    throw Error(ExitCode::usage, std::string(error.what()) + "; `pointgi --help` lists what there is");
+    throw Error(ExitCode::usage,
+                std::string(error.what()) + "; `pointgi" +
+                    (app.get_subcommands().empty() ? std::string() : " " + app.get_subcommands()[0]->get_name()) +
+                    " --help` lists what there is");
   }
   set_up_log(common.verbosity, render.quiet);
   limit_threads(common.threads);

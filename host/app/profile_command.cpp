@@ -78,19 +78,24 @@ void write_programs(const std::string& folder) {
   std::printf("%s\n", file_in(folder, "index.tsv").c_str());
 }
 
+/// Rays a launch of the picture below which its times are those of launching: 60 x 60 pixels of 8 x 4.
+constexpr std::uint64_t fewest_rays_to_store = 100'000;
+
 /// Stores the winner when the run tells what is best of all; says in the report what was done.
 void store(const ProfileOptions& options, ProfileReport& report) {
   const VariantProfile* winner = report.profile.winner();
   if (winner == nullptr) return;
+  const KernelProfile& render = winner->kernels[static_cast<std::size_t>(ProfiledKernel::render)];
   if (options.no_store)
     report.not_stored = "--no-store";
   else if (report.profile.interrupted)
     report.not_stored = "interrupted before all were measured";
   else if (!options.filter.empty() && !options.store)
     report.not_stored = "--filter left variants out that may be faster; --store stores it all the same";
+  else if (render.rays < fewest_rays_to_store && !options.store)
+    report.not_stored = "the picture has too few rays to tell what is best for others; --store stores it all the same";
   else
     try {
-      const KernelProfile& render = winner->kernels[static_cast<std::size_t>(ProfiledKernel::render)];
       report.stored = store_winner(report.device, winner->variant, report.scene,
                                    static_cast<double>(render.rays) / median(render.seconds));
     } catch (const Error& error) { // the figures are worth having without a cache
@@ -106,7 +111,6 @@ Profile measure(Session& session, const Scene& scene, const PlacedSplats& placed
   request.seed = options.seed;
   // A quarter, for the scene's own buffers and other programs want some; on a CPU device it is the host's memory too.
   request.pool_bytes = std::min(request.pool_bytes, session.info().memory_bytes / 4);
-  catch_interrupts();
   stages.start("profile");
   Profile profile;
   {
@@ -139,9 +143,12 @@ ExitCode run_profile(const ProfileOptions& options) {
   if (options.input.empty())
     throw Error(ExitCode::usage, "profile: a scene or cloud to measure on is required; `pointgi profile --help` lists "
                                  "what there is");
+  catch_interrupts();
   StageLog stages;
   stages.start("scene");
   Scene scene = load_any(options.input, options.overrides);
+  if (says_something(scene.traversal, scene.octree))
+    spdlog::info("[octree] and [traversal] of the scene do not narrow the variants: --filter does");
   refuse_unsupported(scene);
   if (!options.output.empty()) require_writable(options.output);
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");

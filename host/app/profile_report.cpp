@@ -11,6 +11,9 @@ namespace {
 constexpr const char* bytes_defined =
     "bytes a second: the least that a launch must move, rays read, answers written and each byte of the pools read "
     "once, over its seconds; what caches save or repeat is not in it";
+constexpr const char* before_its_turn = "interrupted before their turn";
+constexpr const char* ties_defined =
+    "ties: rays that find another splat at exactly the same distance, which trees of another order may";
 constexpr const char* order_defined =
     "sorted by the picture's speed: the reference's seconds for the same rows over the variant's, median of the rounds";
 
@@ -38,13 +41,13 @@ std::string excluded(const VariantProfile& v) {
       if (v.kernels[k].wrong > 0)
         text += " " + std::to_string(v.kernels[k].wrong) +
                 (static_cast<ProfiledKernel>(k) == ProfiledKernel::render
-                     ? " render pixels differ,"
+                     ? " of the picture's eye rays and pixels differ,"
                      : " of " + std::to_string(v.kernels[k].rays) + " " + name_of(static_cast<ProfiledKernel>(k)) +
                            " rays differ,");
     text.back() = ' ';
     return text + "from the reference";
   }
-  return v.complete() ? "" : "not measured: interrupted before its turn";
+  return v.complete() ? "" : before_its_turn;
 }
 
 std::string remarks(const VariantProfile& v) {
@@ -108,8 +111,13 @@ std::vector<Row> rows_of(const Profile& profile) {
 /// Those that are not ranked, a line each.
 std::vector<std::string> rest_of(const ProfileReport& report) {
   std::vector<std::string> lines;
-  for (const VariantProfile& v : report.profile.variants)
-    if (const std::string why = excluded(v); !why.empty()) lines.push_back(name_of(v.variant) + ": " + why);
+  std::size_t never = 0;
+  for (const VariantProfile& v : report.profile.variants) {
+    const std::string why = excluded(v);
+    never += why == before_its_turn;
+    if (!why.empty() && why != before_its_turn) lines.push_back(name_of(v.variant) + ": " + why);
+  }
+  if (never > 0) lines.push_back(std::to_string(never) + " variants were not measured: " + before_its_turn);
   for (const TraversalVariant& v : report.invalid)
     lines.push_back(name_of(v) + ": not valid here: " + why_not(v, report.device));
   return lines;
@@ -154,7 +162,7 @@ std::string profile_table(const ProfileReport& report) {
   }
   for (const std::string& line : rest_of(report))
     text += line + "\n";
-  return text + conclusion(report);
+  return text + "x ref: times the reference's speed, the picture; " + ties_defined + "\n" + conclusion(report);
 }
 
 std::string profile_markdown(const ProfileReport& report) {
@@ -173,7 +181,7 @@ std::string profile_markdown(const ProfileReport& report) {
   for (const std::string& entry : rest)
     text += "* " + entry + "\n";
   return text + "\n" + conclusion(report) + "\n* " + order_defined + "; spread: its least and most\n* " +
-         bytes_defined +
+         bytes_defined + "\n* " + ties_defined +
          "\n* eye: nearest hits of coherent rays, 8x4 a pixel; bounced: of cosine rays off random splats; any: whether "
          "these hit anything; render: the picture's middle rows, eye and shadow rays\n";
 }

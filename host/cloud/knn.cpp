@@ -1,5 +1,6 @@
 #include "host/cloud/knn.h"
 #include "host/error.h"
+#include "octree/build/cell_key.h"
 #include "octree/parallel.h"
 #include <algorithm>
 #include <cmath>
@@ -52,21 +53,13 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-std::uint64_t spread_bits(std::uint64_t v) { // 21 bits, two zeros between any two
-  v = (v | v << 32) & 0x1f00000000ffffu;
-  v = (v | v << 16) & 0x1f0000ff0000ffu;
-  v = (v | v << 8) & 0x100f00f00f00f00fu;
-  v = (v | v << 4) & 0x10c30c30c30c30c3u;
-  return (v | v << 2) & 0x1249249249249249u;
-}
-
-std::uint64_t morton_key(const Eigen::Vector3f& p) {
-  std::uint64_t key = 0;
+std::uint64_t key_of(const Eigen::Vector3f& p) {
+  CellCoordinates cell;
   for (int axis = 0; axis < 3; ++axis) {
-    const double cell = (static_cast<double>(p[axis]) / grid_half + 1.0) * 0.5 * (1 << 21);
-    key |= spread_bits(static_cast<std::uint64_t>(std::clamp(cell, 0.0, (1 << 21) - 1.0))) << axis;
+    const double place = (static_cast<double>(p[axis]) / grid_half + 1.0) * 0.5 * (1 << MAX_AXIS_BITS);
+    cell[axis] = static_cast<std::uint32_t>(std::clamp(place, 0.0, (1 << MAX_AXIS_BITS) - 1.0));
   }
-  return key;
+  return morton_key(cell);
 }
 
 } // namespace
@@ -108,7 +101,7 @@ void Sites::sort_points(const std::vector<Eigen::Vector3d>& positions) {
   parallel_ranges(n, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       local[i] = to_local(positions[i]).cast<float>();
-      order[i] = {morton_key(local[i]), static_cast<std::uint32_t>(i)};
+      order[i] = {key_of(local[i]), static_cast<std::uint32_t>(i)};
     }
   });
   std::sort(order.begin(), order.end(), [&](const Keyed& a, const Keyed& b) {

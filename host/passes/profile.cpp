@@ -65,7 +65,8 @@ struct Measured {
   std::string pools;
   std::string failure;
   int repeats = 1; ///< launches a round
-  KernelProfile times;
+  KernelProfile times = {};
+  std::uint64_t pool_bytes = 0;
 };
 
 /// Equal for launches that do the same work.
@@ -143,7 +144,7 @@ private:
     std::vector<std::size_t> work;
     std::uint64_t bytes = 0;
     std::size_t end = first;
-    for (; end < groups_.size() && bytes < request_.pool_bytes; ++end) {
+    for (; end < groups_.size() && (end == first || bytes < request_.pool_bytes); ++end) {
       const Group& group = groups_[end];
       if (stopped()) break;
       try {
@@ -188,7 +189,8 @@ private:
         m.times.wrong = d.wrong;
         m.times.ties = d.ties;
         m.times.rays = bench_.rays(m.kernel);
-        m.times.bytes = bench_.bytes(m.kernel, pools);
+        m.times.bytes = bench_.bytes(m.kernel, m.variant, pools);
+        m.pool_bytes = pools.tree->bytes;
         const double once = std::max(bench_.launch(m.kernel, m.variant, pools), 1e-6);
         m.repeats = std::clamp(static_cast<int>(repeated_share * request_.launch_seconds / once), 1, most_repeats);
         return 0.0;
@@ -224,11 +226,9 @@ private:
       for (std::size_t k = 0; k < profiled_kernels; ++k) {
         const Measured& m = measured_[launches_of_[i][k]];
         v.kernels[k] = m.times;
+        v.pool_bytes = std::max(v.pool_bytes, m.pool_bytes);
         if (v.failure.empty()) v.failure = m.failure;
       }
-      // All but the rays and answers are the pools.
-      const KernelProfile& any = v.kernels[static_cast<std::size_t>(ProfiledKernel::any)];
-      v.pool_bytes = any.bytes - std::min(any.bytes, any.rays * (sizeof(RayQuery) + sizeof(std::uint32_t)));
     }
   }
 

@@ -16,7 +16,7 @@ enum class ProfiledKernel {
   eye,     ///< nearest hits of the camera's rays, 8x4 a pixel: coherent
   bounced, ///< nearest hits of cosine rays off random splats: incoherent
   any,     ///< whether these hit anything
-  render   ///< render_pixels on rows of the picture: what a user waits for
+  render   ///< eye rays and shading of rows of the picture: what a user waits for
 };
 constexpr std::size_t profiled_kernels = 4;
 const char* name_of(ProfiledKernel kernel);
@@ -38,8 +38,9 @@ struct KernelProfile {
   std::vector<double> speedup; ///< of each: the reference's last seconds before it, over these
   std::uint64_t rays = 0;
   std::uint64_t bytes = 0; ///< the least that must move: rays in, answers out, the pools once
-  std::size_t wrong = 0;   ///< rays (render: pixels) that differ from the reference
-  std::size_t ties = 0;    ///< rays that find another splat at exactly the same distance: counted apart, allowed
+  std::size_t wrong =
+      0; ///< rays that differ from the reference (render: eye rays, and pixels where they are more than few)
+  std::size_t ties = 0; ///< rays that find another splat at exactly the same distance: counted apart, allowed
 };
 
 struct VariantProfile {
@@ -69,8 +70,8 @@ struct Profile {
 
 /// The reference is first proved by a linear scan. Then round by round every variant runs once, in an order that moves
 /// on, with the reference again and again among them: speed is told as a ratio, for the machine's own speed changes.
-/// `progress` (share done) is called and `stop` asked between launches. Throws Error(device) when the reference is
-/// wrong or cannot run; what happens to another variant is told in its `failure`.
+/// `progress` (share done) is called and `stop` asked between launches, save for the reference's first. Throws
+/// Error(device) when the reference is wrong or cannot run; what happens to another variant is told in its `failure`.
 Profile profile_variants(Session& session, const ProfileRequest& request, const std::function<void(double)>& progress,
                          const std::function<bool()>& stop);
 

@@ -5,11 +5,17 @@
 
 namespace pointgi {
 
+namespace {
+
+constexpr std::size_t few_pixels = 100; ///< one in so many may be shaded otherwise; its eye rays may not
+
+} // namespace
+
 Differences compare_answers(View<RayAnswer> found, View<RayAnswer> truth) {
   Differences result;
   for (std::size_t i = 0; i < truth.size; ++i) {
     const RayAnswer &a = found[i], &b = truth[i];
-    const bool near = std::fabs(a.t - b.t) <= 1e-5f * std::max(1.0f, std::fabs(b.t)); // false of NaN
+    const bool near = a.t == b.t || std::fabs(a.t - b.t) <= 1e-5f * std::max(1.0f, std::fabs(b.t)); // false of NaN
     if (a.splat == b.splat && near) continue;
     const bool both_hit = a.splat != NO_SPLAT && b.splat != NO_SPLAT;
     if (a.splat != b.splat && both_hit && a.t == b.t)
@@ -44,7 +50,8 @@ Differences compare_films(View<float> found, View<float> truth, bool lit_alike) 
       return !(std::fabs(a[c] - b[c]) <= 1e-3f * std::max(1.0f, std::fabs(b[c])));
     });
   }
-  return {differing * 100 > pixels ? differing : 0, 0};
+  // Random numbers of light samples turn on the last bit of a surface in a few pixels.
+  return {differing * few_pixels > pixels ? differing : 0, 0};
 }
 
 void to_inputs(std::vector<RayAnswer>& answers, const std::vector<std::uint32_t>& source) {

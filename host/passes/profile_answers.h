@@ -10,6 +10,8 @@ namespace pointgi {
 struct Differences {
   std::size_t wrong = 0;
   std::size_t ties = 0; ///< another splat at exactly the same distance
+
+  Differences operator+(const Differences& other) const { return {wrong + other.wrong, ties + other.ties}; }
 };
 
 /// Answers to the same rays; splats are input indices. Wrong: another splat, or a t further off than 1e-5 of the larger

@@ -78,7 +78,7 @@ double ProfileBench::trace(ProfiledKernel kernel, const TraversalVariant& varian
                                               : "trace_closest_rays");
   const Buffer<RayQuery>& rays = kernel == ProfiledKernel::eye ? eye_ : bounced_;
   const std::size_t count = packets ? eye_packets_.size : rays.size;
-  const LaunchShape shape = LaunchShape::line(count, variant.group.size());
+  const LaunchShape shape = LaunchShape::line(count, packets ? 1 : variant.group.size()); // packets as render has them
   const auto number = static_cast<cl_uint>(count);
   if (packets)
     return session_.launch(traced, shape, p.nodes, p.leaves, p.points, eye_packets_, packet_answers_, number);
@@ -86,11 +86,17 @@ double ProfileBench::trace(ProfiledKernel kernel, const TraversalVariant& varian
   return session_.launch(traced, shape, p.nodes, p.leaves, p.points, rays, answers_, number, 0.0f);
 }
 
-double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools& pools, std::vector<float>* film) {
+double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers) {
   TileRenderer tiles(session_, pools.device, pools.tree->lighting, request_.frame.side, variant);
   const PixelWindow& w = render_window_;
   const double seconds = tiles.launch(w.x0, w.y0, w.x1 - w.x0, w.y1 - w.y0, 0).all();
-  if (film != nullptr) *film = tiles.film(w.x1 - w.x0, w.y1 - w.y0);
+  if (answers == nullptr) return seconds;
+  answers->film = tiles.film(w.x1 - w.x0, w.y1 - w.y0);
+  const auto rays = std::min<pg_uint>(tiles.samples(), GRID_RAYS);
+  for (const EyeHits& pixel : tiles.hits(w.x1 - w.x0, w.y1 - w.y0))
+    for (pg_uint k = 0; k < rays; ++k)
+      answers->hits.push_back({pixel.t[k], pixel.splat[k]});
+  to_inputs(answers->hits, pools.tree->source);
   return seconds;
 }
 
@@ -104,7 +110,7 @@ ProfileBench::Answers ProfileBench::answers(ProfiledKernel kernel, const Travers
   session_.label_launches(name_of(variant) + " " + name_of(kernel) + ", checked");
   Answers found;
   if (kernel == ProfiledKernel::render) {
-    render(variant, pools, &found.film);
+    render(variant, pools, &found);
     return found;
   }
   // What a kernel leaves unwritten must not be another one's right answer.
@@ -135,7 +141,8 @@ Differences ProfileBench::launch_and_compare(ProfiledKernel kernel, const Traver
   case ProfiledKernel::any:
     return compare_blocked(found.blocked, truth.blocked);
   case ProfiledKernel::render:
-    return compare_films(found.film, truth.film, pools.tree->lighting.emitters.empty());
+    return compare_answers(found.hits, truth.hits) +
+           compare_films(found.film, truth.film, pools.tree->lighting.emitters.empty());
   case ProfiledKernel::eye:
   case ProfiledKernel::bounced:
     break;
@@ -149,7 +156,7 @@ void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
   cl::Kernel scan = session_.kernel("traverse/brute_force.cl", "", "brute_force_closest");
   for (const ProfiledKernel kernel : {ProfiledKernel::eye, ProfiledKernel::bounced}) {
     const Buffer<RayQuery>& all = kernel == ProfiledKernel::eye ? eye_ : bounced_;
-    const std::size_t count = std::clamp<std::size_t>(scan_tests / splats, 256, all.size);
+    const std::size_t count = std::min<std::size_t>(std::max<std::size_t>(scan_tests / splats, 256), all.size);
     // Spread over all rays: the first rows of a window may show nothing.
     const std::vector<RayQuery> every = session_.download(all, all.size);
     std::vector<RayQuery> some(count);
@@ -166,7 +173,7 @@ void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
     const Differences d = compare_answers(found, session_.download(answers, count));
     if (d.wrong > 0)
       throw Error(ExitCode::device, session_.info().name + ": " + name_of(reference) +
-                                        ", which all others are checked " + "against, differs from a linear scan in " +
+                                        ", which all others are checked against, differs from a linear scan in " +
                                         std::to_string(d.wrong) + " of " + std::to_string(count) + " " +
                                         name_of(kernel) + " rays; do not trust this driver, or mend the kernels");
     profile.proved_rays += count;
@@ -201,16 +208,21 @@ void ProfileBench::take_reference(const TraversalVariant& reference, const Profi
   profile.render_window = render_window_;
 }
 
-std::uint64_t ProfileBench::bytes(ProfiledKernel kernel, const ProfiledPools& pools) const {
+std::uint64_t ProfileBench::bytes(ProfiledKernel kernel, const TraversalVariant& variant,
+                                  const ProfiledPools& pools) const {
   const std::uint64_t pool_bytes = pools.tree->bytes;
   switch (kernel) {
   case ProfiledKernel::any:
     return pool_bytes + rays(kernel) * (sizeof(RayQuery) + sizeof(cl_uint));
-  case ProfiledKernel::render: {
+  case ProfiledKernel::render: { // two kernels: both read the pools, hits are written and read
     const PixelWindow& w = render_window_;
-    return pool_bytes + sizeof(float) * FILM_CHANNELS * static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0);
+    const auto pixels = static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0);
+    return 2 * pool_bytes + pixels * (2 * sizeof(EyeHits) + sizeof(float) * FILM_CHANNELS);
   }
   case ProfiledKernel::eye:
+    if (variant.grouping == RayGrouping::packet)
+      return pool_bytes + eye_packets_.size * (sizeof(RayPacketQuery) + sizeof(RayPacketAnswer));
+    break;
   case ProfiledKernel::bounced:
     break;
   }

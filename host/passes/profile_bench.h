@@ -44,7 +44,7 @@ public:
   Differences launch_and_compare(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
 
   std::uint64_t rays(ProfiledKernel kernel) const { return rays_[static_cast<std::size_t>(kernel)]; }
-  std::uint64_t bytes(ProfiledKernel kernel, const ProfiledPools& pools) const;
+  std::uint64_t bytes(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools) const;
 
 private:
   struct Answers {
@@ -54,7 +54,7 @@ private:
   };
 
   double trace(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
-  double render(const TraversalVariant& variant, const ProfiledPools& pools, std::vector<float>* film);
+  double render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers);
   Answers answers(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
   void set_rays(ProfiledKernel kernel, std::size_t count);
   void prove(const TraversalVariant& reference, Profile& profile);

@@ -38,6 +38,10 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
   return seconds;
 }
 
+std::vector<EyeHits> TileRenderer::hits(int columns, int rows) {
+  return session_.download(hits_, static_cast<std::size_t>(columns) * rows);
+}
+
 std::vector<float> TileRenderer::film(int columns, int rows) {
   return session_.download(film_, static_cast<std::size_t>(columns) * rows * FILM_CHANNELS);
 }

@@ -1,4 +1,5 @@
 #pragma once
+/// A tile of the picture on the device: hits of its eye rays, then its film.
 #include "host/passes/device_pools.h"
 #include "host/scene/lighting.h"
 
@@ -14,7 +15,7 @@ struct TileSeconds {
 /// The picture's kernels in a variant, with all of their arguments but the tile's place. Borrows session and pools.
 class TileRenderer {
 public:
-  /// `side`: of the root cube, world units. Builds the program where it is not built yet.
+  /// `side`: of the root cube, world units. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant);
 
@@ -25,6 +26,9 @@ public:
 
   /// The film of the last tile, FILM_CHANNELS a pixel: sums over the samples of all passes since the first.
   std::vector<float> film(int columns, int rows);
+
+  /// What the eye rays of its last pass met, pixel after pixel; GRID_RAYS a pixel whatever the number of samples.
+  std::vector<EyeHits> hits(int columns, int rows);
 
 private:
   Session& session_;

@@ -55,12 +55,12 @@ TraversalVariant variant_of(const TunedFile& tuned) {
   return merged(settings, tuned.octree, plain_variant(settings.form.value()));
 }
 
+} // namespace
+
 bool says_something(const TraversalSettings& t, const OctreeSettings& o) {
   return o.branching || o.order || o.leaf_capacity || t.form || t.grouping || t.group || t.lanes || t.storage ||
          t.stepping != Stepping::exact || t.fast_math;
 }
-
-} // namespace
 
 std::string today() {
   const std::time_t now = std::time(nullptr);
@@ -153,8 +153,7 @@ VariantChoice choose_variant(const TraversalSettings& traversal, const OctreeSet
     reason = why;
   }
   throw Error(scene_speaks ? ExitCode::usage : ExitCode::device,
-              device.name + ": the settings of [octree] and [traversal] do not go together: " + reason +
-                  "; `pointgi profile --list` shows what goes");
+              "the settings of [octree] and [traversal] do not go together on " + device.name + ": " + reason);
 }
 
 } // namespace pointgi

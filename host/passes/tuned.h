@@ -30,6 +30,9 @@ std::string store_winner(const DeviceInfo& device, const TraversalVariant& varia
 /// Throws Error(input) when POINTGI_KERNEL_DIR holds a wrong one.
 TunedFile class_defaults(const DeviceInfo& device);
 
+/// Whether a scene narrows the choice of the variant.
+bool says_something(const TraversalSettings& traversal, const OctreeSettings& octree);
+
 struct VariantChoice {
   TraversalVariant variant;
   std::string source; ///< "profile of 2025-01-31", "default of CPU devices", "the scene and default of CPU devices"

@@ -150,8 +150,8 @@ enum class Stepping {
   absolute_delta ///< the thesis' absolute delta, for trade measurements (method.md §6)
 };
 enum class RayGrouping {
-  ray,   ///< a ray a work-item, a pixel's 32 eye rays a work-group
-  packet ///< a pixel's 32 eye rays a work-item
+  ray,   ///< a ray a work-item
+  packet ///< the eye rays of 2 x 2 pixels a work-item
 };
 struct WorkGroup { ///< shape of a work-group; kernels over one dimension take the product
   unsigned x = 8, y = 4;

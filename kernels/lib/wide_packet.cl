@@ -41,7 +41,7 @@ typedef struct PacketBounds {
   float u_low[GROUP_COLUMNS], u_high[GROUP_COLUMNS];
   float v_low[GROUP_ROWS], v_high[GROUP_ROWS];
   float stretch; /* of a length measured along u or v against the distance from a side of a frustum */
-  bool wide;     /* rays more than 84 degrees off the middle: no frustum, every disc meets them */
+  bool wide;     /* rays more than 60 degrees off the middle: no frustum, every disc meets them */
 } PacketBounds;
 
 static inline float16 packet_dot(const RayPacket* p, int group, float3 v) {
@@ -82,8 +82,9 @@ static inline void packet_frusta(const RayPacket* p, PacketBounds* b) {
       flattest = min(flattest, smallest8(a8));
       steepest = max(steepest, max(max(fabs(least.x), fabs(least.y)), max(fabs(least.z), fabs(least.w))));
     }
-  b->wide = !(flattest > 0.1f);
-  b->stretch = sqrt(1.0f + steepest * steepest);
+  /* Farther off, the margin above would not cover the rounding of u/along, about 2e-7 / along^2. */
+  b->wide = !(flattest > 0.5f);
+  b->stretch = b->wide ? 1.0f : sqrt(1.0f + steepest * steepest);
 }
 
 static inline PacketBounds packet_bounds(const RayPacket* p) {
@@ -132,6 +133,8 @@ static inline ulong children_met_by_packet(const __global WideNode* node, const 
 /* For each splat of a block, a bit a group of rays whose frustum its bounding sphere reaches into before t_to. */
 static inline lanes_i groups_met(const __global float* block, const PacketBounds* b, float t_to) {
   const lanes_f radius = load_lanes(block + WIDE_RADIUS(WIDE_LANES));
+  if (b->wide)
+    return (radius > 0.0f) & ((1 << PACKET_GROUPS) - 1);
   const lanes_f x = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - b->origin.x;
   const lanes_f y = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - b->origin.y;
   const lanes_f z = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 2)) - b->origin.z;
@@ -140,8 +143,6 @@ static inline lanes_i groups_met(const __global float* block, const PacketBounds
   const lanes_f v = x * b->v.x + y * b->v.y + z * b->v.z;
   const lanes_f reach = radius * b->stretch + 1e-6f;
   const lanes_i near = (radius > 0.0f) & (a + reach >= 0.0f) & (a - reach <= t_to);
-  if (b->wide)
-    return near & ((1 << PACKET_GROUPS) - 1);
   lanes_i columns[GROUP_COLUMNS];
   for (int c = 0; c < GROUP_COLUMNS; ++c)
     columns[c] = near & (u - b->u_high[c] * a <= reach) & (b->u_low[c] * a - u <= reach);

@@ -4,7 +4,7 @@
 /* What the host tells the render kernels of a scene. Lengths are in root cube units; radiometric quantities are divided
  * by one power of two of the host's choosing (RadianceScale), so that lights of 1e-20 or 1e20 W stay inside float. */
 
-/* A pixel's 32 rays are one work-group of GRID_X x GRID_Y work-items (method.md section 6). */
+/* A pixel has 32 rays, in a grid of GRID_X x GRID_Y (method.md section 6). */
 #define GRID_X 8
 #define GRID_Y 4
 #define GRID_RAYS (GRID_X * GRID_Y)

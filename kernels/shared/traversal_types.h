@@ -27,7 +27,7 @@ typedef struct RayAnswer {
 typedef struct RayPacketQuery {
   float direction[3][PACKET_RAYS]; /* bytes 0-1535: unit */
   float origin[3];                 /* bytes 1536-1547 */
-  float t_min;                     /* bytes 1548-1551 */
+  float t_min;                     /* bytes 1548-1551: not negative */
   float t_max;                     /* bytes 1552-1555 */
   pg_uint reserved[11];            /* bytes 1556-1599 */
 } RayPacketQuery;

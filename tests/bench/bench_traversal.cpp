@@ -5,6 +5,7 @@
 #include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
+#include "host/passes/profile.h"
 #include "host/passes/profile_rays.h"
 #include "host/passes/ray_packets.h"
 #include "host/passes/tuned.h"
@@ -27,11 +28,6 @@ using namespace pointgi;
 using namespace pointgi::bench;
 
 constexpr int image = 256; // pixels a side
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 /// What a measurement counts: the wall's seconds, or those that the process computed on all its threads, which other
 /// programs on the machine disturb less.

@@ -1,6 +1,8 @@
 #include "tests/bench/embree_peer.h"
 #include <cstring>
+#include <omp.h>
 #include <pmmintrin.h>
+#include <string>
 
 namespace pointgi::bench {
 
@@ -38,7 +40,7 @@ RayAnswer answer_of(const RTCRayHit& hit) {
 EmbreePeer::EmbreePeer(const std::vector<Splat>& splats) {
 #pragma omp parallel
   flush_denormals();
-  device_ = rtcNewDevice("threads=2,start_threads=1");
+  device_ = rtcNewDevice(("start_threads=1,threads=" + std::to_string(omp_get_max_threads())).c_str());
   scene_ = rtcNewScene(device_);
   rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);

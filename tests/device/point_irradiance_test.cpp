@@ -60,7 +60,7 @@ TEST_CASE("direct irradiance of points: I cos / d^2 where the light reaches, not
       const bool is_floor = s.normal[2] > 0.0f;
       const double dx = 0.6 - s.position[0], dy = 0.5 - s.position[1], dz = 0.6 - s.position[2];
       const double d2 = dx * dx + dy * dy + dz * dz;
-      const double expected = 2.0 * std::fabs(dz) / std::sqrt(d2) / d2; // between the two: both face it
+      const double expected = 2.0 * std::fabs(dz) / std::sqrt(d2) / d2;   // between the two: both face it
       CHECK(point[3 * i] == Approx(expected).epsilon(1e-4).margin(1e-6)); // float arithmetic
       if (!is_floor) {
         CHECK(sun[3 * i] == 0.0f);                               // its back

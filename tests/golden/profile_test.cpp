@@ -154,7 +154,27 @@ TEST_CASE("a wrong picture is rejected, though every given ray is answered right
   const Run run =
       s.profile(std::string("--rounds 1 --filter ") + wide_packet, "POINTGI_KERNEL_DIR=" + s.folder.file("kernels"));
   CHECK(run.code == 0);
-  CHECK_THAT(run.out, Contains(": WRONG: ") && Contains("render pixels") && !Contains("eye rays differ"));
+  CHECK_THAT(run.out, Contains(": WRONG: ") && Contains("picture's eye rays") && !Contains("eye rays differ"));
+}
+
+TEST_CASE("one wrong pixel is enough to be rejected") {
+  const Setting s;
+  std::filesystem::copy(POINTGI_SOURCE_DIR "/kernels", s.folder.file("kernels"),
+                        std::filesystem::copy_options::recursive);
+  const std::string path = "kernels/render/eye_rays.cl";
+  std::string text = contents(s.folder.file(path));
+  const std::string from = "vstore16(found.splat[2u * k + half_pixel],";
+  REQUIRE(text.find(from) != std::string::npos);
+  s.folder.write(
+      path,
+      text.replace(
+          text.find(from), from.size(),
+          "vstore16(found.splat[2u * k + half_pixel] | (at.x == columns / 2u && at.y == rows / 2u ? NO_SPLAT : 0u),"));
+  const Run run = s.profile(std::string("--rounds 1 --store --filter ") + wide_packet,
+                            "POINTGI_KERNEL_DIR=" + s.folder.file("kernels"));
+  CHECK(run.code == 0);
+  CHECK_THAT(run.out, Contains(": WRONG: ") && Contains("picture's eye rays"));
+  CHECK_THAT(run.out, Contains("best: step") || Contains("no variant"));
 }
 
 TEST_CASE("a filtered profile stores nothing unless it is told to") {
