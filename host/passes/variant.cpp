@@ -65,4 +65,8 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
   return program(variant, "render/shade.cl", options);
 }
 
+Program segments_program(const TraversalVariant& variant) {
+  return program(variant, "visibility/segments.cl", "");
+}
+
 } // namespace pointgi

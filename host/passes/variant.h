@@ -50,6 +50,9 @@ Program eye_rays_program(const TraversalVariant& variant);
 /// The picture from these hits, shade_pixels: a pixel a half or whole work-group.
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features);
 
+/// Visibility between points for the V-map, segments_blocked.
+Program segments_program(const TraversalVariant& variant);
+
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
 
