@@ -192,7 +192,7 @@ private:
   void decide_whole(const Pair& pair, const Question& q, std::uint32_t open, Output& out) const {
     const float visible = share(q, open);
     const bool retested = pair.stage == Stage::all_blocked;
-    if (visible == 0.0f && q.small) return;
+    if ((visible == 0.0f || q.segments == 0) && q.small) return;
     if (visible == 0.0f && !options_.thesis) {
       // Behind a wall, or almost.
       if (!retested) out.next.push_back({pair.a, pair.b, Stage::all_blocked});
