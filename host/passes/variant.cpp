@@ -73,4 +73,8 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
   return program(variant, "fmm/direct_irradiance.cl", feature_options(features));
 }
 
+Program segments_program(const TraversalVariant& variant) {
+  return program(variant, "visibility/segments.cl", "");
+}
+
 } // namespace pointgi

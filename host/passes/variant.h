@@ -52,6 +52,9 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
 /// Direct irradiance of the points, direct_irradiance_of_points.
 Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features);
 
+/// Visibility between points for the V-map, segments_blocked.
+Program segments_program(const TraversalVariant& variant);
+
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
 

@@ -26,15 +26,6 @@ static inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
   return *t_enter <= *t_leave;
 }
 
-/* Overlapping discs stick out of the surface they stand for, so a ray that leaves a surface would meet its neighbours'
- * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end, in units of the
- * two discs' radii, and its disc faces the same way. A wall across, or the far side of a sheet of any thickness, blocks
- * at any distance, so corners and contacts do not leak. */
-#define SELF_HIT_REACH 1.5f
-#define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
-/* A sheet stored as two coincident sides: the other side is the surface itself as long as it lies within rounding. */
-#define COINCIDENT 1e-5f
-
 typedef struct ShadowEnds {
   float3 origin_normal, target_normal; /* facing the ray or not: the side does not matter, the splat's own normal does */
   float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */

@@ -37,4 +37,22 @@ typedef struct RayPacketAnswer {
   pg_uint splat[PACKET_RAYS]; /* bytes 512-1023 */
 } RayPacketAnswer;
 
+/* Overlapping discs stick out of the surface they stand for, so a ray that leaves a surface would meet its neighbours'
+ * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end, in units of the
+ * two discs' radii, and its disc faces the same way. A wall across, or the far side of a sheet of any thickness, blocks
+ * at any distance, so corners and contacts do not leak. */
+#define SELF_HIT_REACH 1.5f
+#define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
+/* A sheet stored as two coincident sides: the other side is the surface itself as long as it lies within rounding. */
+#define COINCIDENT 1e-5f
+
+/* A segment between two points is traced from a little before its start to a little behind its end: where two walls
+ * meet, rounding may put a point a few float steps beyond the other wall, and light would leak along the edge. */
+#define SEGMENT_MARGIN 4e-6f
+
+/* A question of the V-map: does anything stand between two points? */
+typedef struct SegmentQuery {
+  pg_uint from, to; /* bytes 0-7: indices into the table of points, OctreePoints */
+} SegmentQuery;
+
 #endif

@@ -35,6 +35,7 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[24] = OFFSET(RayPacketQuery, t_max);
   sizes[25] = sizeof(RayPacketAnswer);
   sizes[26] = sizeof(EyeHits);
+  sizes[27] = sizeof(SegmentQuery);
 }
 
 /* nodes[i] = the leaf or empty node that holds positions[i] (xyz), for i < count. */

@@ -41,6 +41,7 @@ TEST_CASE("device and host lay the shared structs out alike") {
       offsetof(RayPacketQuery, t_max),
       sizeof(RayPacketAnswer),
       sizeof(EyeHits),
+      sizeof(SegmentQuery),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_layout");

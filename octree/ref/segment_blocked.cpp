@@ -1,0 +1,49 @@
+#include "octree/ref/segment_blocked.h"
+#include "octree/parallel.h"
+#include "shared/traversal_types.h"
+#include <Eigen/Core>
+
+namespace pointgi {
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+Vector vector_of(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+/// Whether a hit at distance t from a segment's end belongs to the surface there.
+bool belongs_to_end(const Splat& end, const Splat& hit, double t, double cosine) {
+  const double reach = SELF_HIT_REACH * (static_cast<double>(end.radius) + hit.radius);
+  return (t < reach && cosine > SELF_HIT_COSINE) || (t < COINCIDENT && cosine < -SELF_HIT_COSINE);
+}
+
+} // namespace
+
+bool segment_blocked(View<Splat> splats, const Splat& from, const Splat& to) {
+  const Vector origin = vector_of(from.position), between = vector_of(to.position) - origin;
+  const double length = between.norm();
+  const Vector direction = between / length;
+  for (const Splat& s : splats) {
+    const Vector normal = vector_of(s.normal), offset = vector_of(s.position) - origin;
+    const double t = normal.dot(offset) / normal.dot(direction);
+    if (!(t > -SEGMENT_MARGIN && t < length + SEGMENT_MARGIN)) continue;
+    if ((t * direction - offset).squaredNorm() > static_cast<double>(s.radius) * s.radius) continue;
+    if (!belongs_to_end(from, s, t, normal.dot(vector_of(from.normal))) &&
+        !belongs_to_end(to, s, length - t, normal.dot(vector_of(to.normal))))
+      return true;
+  }
+  return false;
+}
+
+std::vector<std::uint8_t> LinearScan::blocked(View<Segment> segments) {
+  std::vector<std::uint8_t> answers(segments.size);
+  parallel_ranges(segments.size, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      answers[i] = segment_blocked(splats_, points_[segments[i].from], points_[segments[i].to]);
+  });
+  return answers;
+}
+
+} // namespace pointgi

@@ -1,0 +1,48 @@
+#pragma once
+/// The hierarchical V-map: which clusters exchange light, how, and through what share of free segments (method.md §3).
+#include "octree/vmap/links.h"
+#include "shared/traversal_types.h"
+
+namespace pointgi {
+
+/// A question: does anything stand between two points? Indices into ClusterTree::points; the device's own struct.
+using Segment = SegmentQuery;
+
+/// Who answers: the device (host/passes/visibility.h), or a linear scan (octree/ref/segment_blocked.h).
+class VisibilityOracle {
+public:
+  virtual ~VisibilityOracle() = default;
+  /// One byte a segment, in their order: 1 when something besides the surfaces at its two ends is in its way, else 0.
+  virtual std::vector<std::uint8_t> blocked(View<Segment> segments) = 0;
+};
+
+struct LinkOptions {
+  unsigned samples = 8;     ///< K: segments a pair of clusters, 1 to 1024; leaves that lie close get 2 K
+  float epsilon = 1e-2f;    ///< a pair whose exchange_bound is smaller is taken as it is; 0: none is
+  float separation = 0.55f; ///< far apart: radius_a + radius_b < separation * distance; (0, 1]
+  std::uint32_t seed = 1;   ///< of the choice of points
+  bool thesis = false; ///< one segment a pair, between the points nearest to the centroids, whatever `samples` says
+  std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
+};
+
+struct LinkStatistics {
+  std::uint64_t pairs_tested = 0;
+  std::uint64_t far = 0, mid = 0, near_ = 0; ///< links
+  std::uint64_t rays = 0;                    ///< segments asked for
+  std::uint64_t waves = 0;                   ///< rounds of questions
+};
+
+struct VMap {
+  std::vector<Link> links; ///< wave after wave; no pair twice
+  LinkStatistics statistics;
+};
+
+/// Dual traversal from the pair (root, root), a wavefront of pairs at a time: the host classifies all pairs of a wave
+/// by their bounds, `oracle` answers the segments of those that bounds do not decide, and what is partly visible or not
+/// wholly facing goes, divided, into the next wave. Every two points that exchange light and see each other lie under
+/// one link, save for what sampling misses. Segments run between points that face each other, stratified by area, and
+/// depend on the pair and the seed alone: the same links for any number of threads and any batch. Throws
+/// std::invalid_argument on options out of range, and what the oracle throws.
+VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options);
+
+} // namespace pointgi

@@ -1,0 +1,37 @@
+#pragma once
+/// The segments that stand for a pair of clusters.
+#include "octree/vmap/make_links.h"
+
+namespace pointgi {
+
+/// Whether light can go between two points as far as their normals are concerned.
+bool face_each_other(const Splat& a, const Splat& b);
+
+/// Chooses points of clusters by area.
+class PairSamples {
+public:
+  /// `thesis`: also finds the point nearest to each cluster's centroid. The tree must outlive this.
+  PairSamples(const ClusterTree& tree, std::uint32_t seed, bool thesis);
+
+  /// Appends those of `count` segments between a and b whose ends face each other; returns how many. Hammersley's
+  /// points along both curves, turned by two random numbers of (seed, a, b, salt).
+  std::uint32_t stratified(std::uint32_t a, std::uint32_t b, std::uint32_t count, std::uint32_t salt,
+                           std::vector<Segment>& out) const;
+
+  /// Appends at most `count` of all segments between a and b whose ends face each other, evenly; returns how many.
+  /// Goes through all pairs of points.
+  std::uint32_t exhaustive(std::uint32_t a, std::uint32_t b, std::uint32_t count, std::vector<Segment>& out) const;
+
+  /// Appends the segment between the points nearest to the centroids, whether they face each other or not; 1.
+  std::uint32_t central(std::uint32_t a, std::uint32_t b, std::vector<Segment>& out) const;
+
+private:
+  std::uint32_t point_at(const Cluster& c, double share) const;
+
+  const ClusterTree& tree_;
+  std::uint32_t seed_;
+  std::vector<double> area_before_;    ///< of all points before each, and of all
+  std::vector<std::uint32_t> central_; ///< thesis only: a point a node
+};
+
+} // namespace pointgi
