@@ -1,0 +1,287 @@
+#include "octree/vmap/cluster_tree.h"
+#include "octree/build/tree.h"
+#include "octree/parallel.h"
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace pointgi {
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+constexpr double pi = 3.14159265358979323846;
+
+/// A cell of no more points is a leaf however its normals spread: noise must not end in leaves of one point each.
+constexpr unsigned few_points = 8;
+
+/// Items that a thread takes at a time.
+constexpr std::size_t node_grain = 64, point_grain = 16384;
+
+Vector position_of(const Splat& s) {
+  return {s.position[0], s.position[1], s.position[2]};
+}
+Vector normal_of(const Splat& s) {
+  return Vector(s.normal[0], s.normal[1], s.normal[2]).normalized();
+}
+Vector vector_of(const float v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+double area_of(const Splat& s) {
+  return s.area;
+}
+
+float rounded_up(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+float rounded_down(double x) {
+  return -rounded_up(-x);
+}
+
+/// Sums over points, from which the means follow.
+struct Moments {
+  double area = 0.0;
+  Vector position = Vector::Zero(); ///< area-weighted
+  Vector normal = Vector::Zero();   ///< area-weighted
+  float low[3], high[3];
+
+  Moments() {
+    std::fill_n(low, 3, std::numeric_limits<float>::infinity());
+    std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+  }
+
+  void add(const Splat& s) {
+    area += area_of(s);
+    position += area_of(s) * position_of(s);
+    normal += area_of(s) * normal_of(s);
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], s.position[a]);
+      high[a] = std::max(high[a], s.position[a]);
+    }
+  }
+  void add(const Moments& m) {
+    area += m.area;
+    position += m.position;
+    normal += m.normal;
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], m.low[a]);
+      high[a] = std::max(high[a], m.high[a]);
+    }
+  }
+};
+
+/// Largest and smallest of what is measured from the means; their order of computation does not matter to the bit.
+struct Extent {
+  double radius2 = 0.0;
+  double chord2 = 0.0; ///< of a normal's end from the axis' end: precise where the arc cosine is not
+  double low_along = std::numeric_limits<double>::infinity(), high_along = -low_along;
+
+  void add(const Splat& s, const Vector& centre, const Vector& axis, const Vector& unit_axis) {
+    const Vector p = position_of(s);
+    const double along = axis.dot(p);
+    radius2 = std::max(radius2, (p - centre).squaredNorm());
+    chord2 = std::max(chord2, (normal_of(s) - unit_axis).squaredNorm());
+    low_along = std::min(low_along, along);
+    high_along = std::max(high_along, along);
+  }
+  void add(const Extent& e) {
+    radius2 = std::max(radius2, e.radius2);
+    chord2 = std::max(chord2, e.chord2);
+    low_along = std::min(low_along, e.low_along);
+    high_along = std::max(high_along, e.high_along);
+  }
+};
+
+Extent extent_of(const Cluster& c, const Splat* points, std::size_t begin, std::size_t end) {
+  const Vector centre = vector_of(c.centre), axis = vector_of(c.axis), unit_axis = axis.normalized();
+  Extent extent;
+  for (std::size_t i = begin; i < end; ++i)
+    extent.add(points[i], centre, axis, unit_axis);
+  return extent;
+}
+
+/// Box and means from sums over all the cluster's points.
+void set_means(Cluster& c, const Moments& m) {
+  std::copy_n(m.low, 3, c.low);
+  std::copy_n(m.high, 3, c.high);
+  c.area = static_cast<float>(m.area);
+  const Vector middle = 0.5 * (vector_of(m.low) + vector_of(m.high));
+  const Vector centre = m.area > 0.0 ? Vector(m.position / m.area) : middle;
+  // Normals that cancel: where they point on the whole is rounding.
+  const double length = m.normal.norm();
+  const bool has_mean = length > 1e-9 * m.area;
+  const Vector axis = has_mean ? Vector(m.normal / length) : Vector(0.0, 0.0, 1.0);
+  for (int a = 0; a < 3; ++a) {
+    c.centre[a] = static_cast<float>(centre[a]);
+    c.axis[a] = static_cast<float>(axis[a]);
+  }
+  c.cone = has_mean ? 0.0f : static_cast<float>(pi);
+}
+
+/// Bounds, rounded outwards: what is said of all points holds for all points.
+void set_bounds(Cluster& c, const Extent& e) {
+  c.radius = rounded_up(std::sqrt(e.radius2));
+  if (c.cone == 0.0f) c.cone = rounded_up(2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(e.chord2))));
+  c.low_along = rounded_down(e.low_along);
+  c.high_along = rounded_up(e.high_along);
+}
+
+class Clusters {
+public:
+  Clusters(View<Splat> splats, const ClusterOptions& options) : options_(options) {
+    TreeOptions tree_options;
+    tree_options.leaf_capacity = std::min(few_points, options.leaf_capacity);
+    tree_options.max_depth = options.max_depth;
+    tree_options.listing = Listing::centres;
+    cells_ = build_tree(splats, tree_options);
+    clusters_.order.assign(cells_.order.begin(), cells_.order.end());
+    clusters_.points.resize(splats.size);
+    clusters_.leaf_of.resize(splats.size);
+    parallel_ranges(splats.size, point_grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        clusters_.points[k] = splats[clusters_.order[k]];
+    });
+    copy_cells();
+    measure();
+  }
+
+  ClusterTree take() { return std::move(clusters_); }
+
+private:
+  /// Whether the points of a cell, which are no more than a leaf may hold, face nearly the same way.
+  bool near_planar(const TreeNode& cell) const {
+    Moments moments;
+    for (std::uint32_t i = 0; i < cell.count; ++i)
+      moments.add(clusters_.points[cell.first_point + i]);
+    Cluster c;
+    set_means(c, moments);
+    set_bounds(c, extent_of(c, clusters_.points.data(), cell.first_point, cell.first_point + cell.count));
+    return c.cone <= options_.planar_cone;
+  }
+
+  bool ends_here(const TreeNode& cell) const {
+    return cell.first_child == 0 || (cell.count <= options_.leaf_capacity && near_planar(cell));
+  }
+
+  /// The cells that hold points, level after level, so that a level's nodes can be treated at once.
+  void copy_cells() {
+    std::vector<TreeNode> level{cells_.nodes[0]};
+    clusters_.nodes.emplace_back();
+    clusters_.nodes[0].count = level[0].count;
+    for (std::uint32_t first = 0; !level.empty(); first = level_starts_.back()) {
+      level_starts_.push_back(first + static_cast<std::uint32_t>(level.size()));
+      std::vector<std::uint8_t> divided(level.size());
+      parallel_ranges(level.size(), node_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          divided[i] = !ends_here(level[i]);
+      });
+      std::vector<TreeNode> next;
+      for (std::size_t i = 0; i < level.size(); ++i)
+        if (divided[i] != 0) add_children(level[i], first + static_cast<std::uint32_t>(i), next);
+      level = std::move(next);
+    }
+  }
+
+  void add_children(const TreeNode& cell, std::uint32_t parent, std::vector<TreeNode>& next) {
+    const auto first = static_cast<std::uint32_t>(clusters_.nodes.size());
+    for (unsigned k = 0; k < 8; ++k) {
+      const TreeNode& child = cells_.nodes[cell.first_child + k];
+      if (child.count == 0) continue;
+      Cluster c;
+      c.first_point = child.first_point;
+      c.count = child.count;
+      c.parent = parent;
+      c.level = child.level;
+      clusters_.nodes.push_back(c);
+      next.push_back(child);
+    }
+    clusters_.nodes[parent].first_child = first;
+    clusters_.nodes[parent].child_count = static_cast<std::uint32_t>(clusters_.nodes.size()) - first;
+  }
+
+  /// Means from the leaves upwards, then bounds.
+  void measure() {
+    moments_.resize(clusters_.nodes.size());
+    for (std::size_t level = level_starts_.size(); level-- > 0;) {
+      const std::size_t first = level == 0 ? 0 : level_starts_[level - 1];
+      parallel_ranges(level_starts_[level] - first, node_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = first + begin; i < first + end; ++i)
+          sum_up(i);
+      });
+    }
+    std::vector<std::size_t> large;
+    for (std::size_t i = 0; i < clusters_.nodes.size(); ++i)
+      if (clusters_.nodes[i].count > point_grain) large.push_back(i);
+    parallel_ranges(clusters_.nodes.size(), node_grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Cluster& c = clusters_.nodes[i];
+        if (c.count > 0 && c.count <= point_grain)
+          set_bounds(c, extent_of(c, clusters_.points.data(), c.first_point, c.first_point + c.count));
+      }
+    });
+    for (const std::size_t i : large)
+      measure_large(clusters_.nodes[i]);
+  }
+
+  void sum_up(std::size_t node) {
+    Cluster& c = clusters_.nodes[node];
+    Moments& sum = moments_[node];
+    for (std::uint32_t k = 0; k < c.child_count; ++k)
+      sum.add(moments_[c.first_child + k]);
+    if (c.child_count == 0)
+      for (std::uint32_t k = 0; k < c.count; ++k) {
+        sum.add(clusters_.points[c.first_point + k]);
+        clusters_.leaf_of[c.first_point + k] = static_cast<std::uint32_t>(node);
+      }
+    if (c.count > 0) set_means(c, sum);
+  }
+
+  /// With all threads at the points of one cluster.
+  void measure_large(Cluster& c) const {
+    std::vector<Extent> found((c.count + point_grain - 1) / point_grain);
+    parallel_ranges(c.count, point_grain, [&](std::size_t begin, std::size_t end) {
+      found[begin / point_grain] = extent_of(c, clusters_.points.data(), c.first_point + begin, c.first_point + end);
+    });
+    Extent extent;
+    for (const Extent& part : found)
+      extent.add(part);
+    set_bounds(c, extent);
+  }
+
+  ClusterOptions options_;
+  Tree cells_;
+  ClusterTree clusters_;
+  std::vector<std::uint32_t> level_starts_; ///< one past the last node of each level
+  std::vector<Moments> moments_;            ///< one a node
+};
+
+/// What nothing is known of: no point, no area, normals anywhere.
+Cluster empty_cluster() {
+  Cluster c;
+  for (float* v : {c.low, c.high, c.centre, c.axis})
+    std::fill_n(v, 3, 0.0f);
+  c.axis[2] = 1.0f;
+  c.radius = c.low_along = c.high_along = c.area = 0.0f;
+  c.cone = static_cast<float>(pi);
+  return c;
+}
+
+} // namespace
+
+ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options) {
+  if (!(options.planar_cone > 0.0f)) throw std::invalid_argument("vmap: planar_cone must be above 0 radians");
+  if (options.leaf_capacity < 1) throw std::invalid_argument("vmap: leaf_capacity must be at least 1");
+  if (splats.size == 0) {
+    ClusterTree tree;
+    tree.nodes.push_back(empty_cluster());
+    return tree;
+  }
+  return Clusters(splats, options).take();
+}
+
+} // namespace pointgi
