@@ -37,42 +37,13 @@ void for_weights(const Grid& grid, const double x[3], const Use& use) {
 FmmOperator::FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options)
     : tree_(tree), grids_(make_grids(tree, options.grid)),
       lists_(make_interaction_lists(tree, links, grids_, options.lists)), points_(tree.points.begin(), tree.points.end()),
-      levels_(levels_of(tree)), fluxes_(tree.nodes.size()) {
+      levels_(levels_of(tree)) {
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     if (tree.nodes[k].child_count == 0) leaves_.push_back(k);
   for (int value = 0; value < FMM_VALUES; ++value) {
     moments_[value].resize(grids_.nodes());
     local_[value].resize(grids_.nodes());
   }
-}
-
-/// Flux vectors and centroids of all clusters, from the points of each: the sums of children would do, and would be
-/// cheaper, but this runs once an apply and is a small part of it.
-void FmmOperator::gather_fluxes(View<double> radiosity, Judge judge) {
-  parallel_ranges(tree_.nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Cluster& cluster = tree_.nodes[k];
-      Flux& f = fluxes_[k];
-      Eigen::Vector3d centre(0, 0, 0), normal(0, 0, 0);
-      double power = 0.0;
-      for (auto& flux : f.flux)
-        flux.setZero();
-      for (std::uint32_t j = cluster.first_point; j < cluster.first_point + cluster.count; ++j) {
-        const ExchangePoint& p = points_[j];
-        const double* b = radiosity.data + 3 * j;
-        for (int c = 0; c < 3; ++c)
-          f.flux[c] += p.area * b[c] * p.n;
-        centre += p.area * (b[0] + b[1] + b[2]) * p.x;
-        power += p.area * (b[0] + b[1] + b[2]);
-        normal += p.area * p.n;
-      }
-      if (judge == Judge::before) continue;
-      f.centre = power > 0.0 ? Eigen::Vector3d(centre / power)
-                             : Eigen::Vector3d(cluster.centre[0], cluster.centre[1], cluster.centre[2]);
-      for (int c = 0; c < 3; ++c) // a dark cluster shines, once it does, to the side of its mean normal
-        f.judge[c] = f.flux[c].squaredNorm() > 0.0 ? f.flux[c] : normal;
-    }
-  });
 }
 
 /// P2M of a leaf, M2M of any other cluster.
@@ -156,7 +127,7 @@ void FmmOperator::evaluate_leaf(std::uint32_t leaf, View<double> radiosity, doub
     });
     for (std::uint32_t k = leaf;; k = tree_.nodes[k].parent) {
       for (std::uint32_t entry = lists_.mid.begin[k]; entry < lists_.mid.begin[k + 1]; ++entry) {
-        const Flux& source = fluxes_[lists_.mid.source[entry]];
+        const ClusterFlux& source = fluxes_[lists_.mid.source[entry]];
         const Eigen::Vector3d r = source.centre - p.x;
         const double r2 = r.squaredNorm(), facing = p.n.dot(r);
         if (!(facing > 0.0)) continue;
@@ -189,7 +160,7 @@ void FmmOperator::apply(View<double> radiosity, Judge judge, std::vector<double>
         body(clusters[k]);
     });
   };
-  gather_fluxes(radiosity, judge);
+  update_cluster_fluxes(tree_, points_, radiosity, judge, fluxes_);
   for (std::size_t level = levels_.size(); level-- > 0;)
     for_all(levels_[level], [&](std::uint32_t k) { moments_of(k, radiosity); });
   for (std::size_t level = 0; level < levels_.size(); ++level)

@@ -1,7 +1,7 @@
 #pragma once
 /// H(B) by the fast multipole method in double precision: the twin of the kernels (method.md section 4).
 #include "fmm/lists/interaction_lists.h"
-#include "fmm/operators/point_pair.h"
+#include "fmm/operators/cluster_flux.h"
 #include "fmm/solve/radiosity_operator.h"
 #include <array>
 
@@ -29,12 +29,7 @@ public:
 private:
   /// Values of an expansion, FMM_VALUES planes of nodes, each as long as Grids::nodes().
   using Expansion = std::array<std::vector<double>, FMM_VALUES>;
-  struct Flux {
-    Eigen::Vector3d centre;
-    Eigen::Vector3d flux[3], judge[3];
-  };
 
-  void gather_fluxes(View<double> radiosity, Judge judge);
   void moments_of(std::uint32_t cluster, View<double> radiosity);
   void receive_far(std::uint32_t cluster);
   void receive_from_parent(std::uint32_t cluster);
@@ -47,7 +42,7 @@ private:
   std::vector<std::vector<std::uint32_t>> levels_; ///< clusters of each level, the root first
   std::vector<std::uint32_t> leaves_;
   Expansion moments_, local_;
-  std::vector<Flux> fluxes_;
+  std::vector<ClusterFlux> fluxes_;
   bool judged_ = false;
 };
 

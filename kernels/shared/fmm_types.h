@@ -25,6 +25,15 @@ typedef struct FmmGrid {
 } FmmGrid;
 #define FMM_AXIS(grid_axis, a) (((grid_axis) >> (8 * (a))) & 255u)
 
+/* What the kernels ask of a cluster: as octree/vmap/cluster_tree.h. */
+typedef struct FmmCluster {
+  pg_uint first_point; /* bytes 0-3 */
+  pg_uint count;       /* bytes 4-7 */
+  pg_uint first_child; /* bytes 8-11 */
+  pg_uint child_count; /* bytes 12-15: 0, a leaf */
+  pg_uint parent;      /* bytes 16-19: the root is its own */
+} FmmCluster;
+
 /* What a cluster is as one flux vector a colour (MID). Which side it shines to is judged by the flux when the linear
  * operator was frozen; an iteration that is not frozen has it equal to `flux`. */
 typedef struct FmmFlux {
