@@ -1,0 +1,95 @@
+#include "fmm/lists/interaction_lists.h"
+#include "octree/parallel.h"
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace pointgi {
+
+namespace {
+
+void check(const ClusterTree& tree, const Link& link) {
+  const auto refuse = [&](const char* why) {
+    throw std::invalid_argument("link of clusters " + std::to_string(link.a) + " and " + std::to_string(link.b) + ": " +
+                                why);
+  };
+  if (link.a >= tree.nodes.size() || link.b >= tree.nodes.size()) refuse("no such cluster");
+  if (link.a == link.b && (link.kind != LinkKind::near_ || tree.nodes[link.a].child_count != 0))
+    refuse("only a leaf is linked to itself, and near");
+  if (!(link.visible > 0.0f && link.visible <= 1.0f)) refuse("its visible share is not in (0, 1]");
+}
+
+/// Area of the largest splat of each cluster.
+std::vector<float> largest_areas(const ClusterTree& tree) {
+  std::vector<float> largest(tree.nodes.size(), 0.0f);
+  for (std::size_t k = tree.nodes.size(); k-- > 0;) {
+    const Cluster& c = tree.nodes[k];
+    if (c.child_count == 0)
+      for (std::uint32_t i = c.first_point; i < c.first_point + c.count; ++i)
+        largest[k] = std::max(largest[k], tree.points[i].area);
+    if (k != 0) largest[c.parent] = std::max(largest[c.parent], largest[k]);
+  }
+  return largest;
+}
+
+/// Distance of the boxes, squared.
+float gap_squared(const Cluster& a, const Cluster& b) {
+  float sum = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float gap = std::max({0.0f, a.low[axis] - b.high[axis], b.low[axis] - a.high[axis]});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+SourceLists rows_of(std::size_t clusters, View<Link> links, const std::vector<LinkKind>& kinds, LinkKind kind) {
+  SourceLists lists;
+  lists.begin.assign(clusters + 1, 0);
+  for (std::size_t k = 0; k < links.size; ++k)
+    if (kinds[k] == kind) {
+      ++lists.begin[links[k].a + 1];
+      if (links[k].a != links[k].b) ++lists.begin[links[k].b + 1];
+    }
+  for (std::size_t k = 0; k < clusters; ++k)
+    lists.begin[k + 1] += lists.begin[k];
+  lists.source.resize(lists.begin.back());
+  lists.share.resize(lists.begin.back());
+  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  const auto add = [&](std::uint32_t receiver, std::uint32_t source, float share) {
+    lists.source[next[receiver]] = source;
+    lists.share[next[receiver]++] = share;
+  };
+  for (std::size_t k = 0; k < links.size; ++k)
+    if (kinds[k] == kind) {
+      add(links[k].a, links[k].b, links[k].visible);
+      if (links[k].a != links[k].b) add(links[k].b, links[k].a, links[k].visible);
+    }
+  return lists;
+}
+
+} // namespace
+
+InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, const Grids& grids,
+                                        const ListOptions& options) {
+  if (links.size > 0x7fffffffu) throw std::invalid_argument("too many links for 32-bit lists");
+  const std::vector<float> largest = largest_areas(tree);
+  std::vector<LinkKind> kinds(links.size);
+  parallel_ranges(links.size, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Link& link = links[k];
+      check(tree, link);
+      kinds[k] = link.kind;
+      if (link.kind != LinkKind::far) continue;
+      const Cluster &a = tree.nodes[link.a], &b = tree.nodes[link.b];
+      const bool close = gap_squared(a, b) < FMM_CLOSE * std::max(largest[link.a], largest[link.b]);
+      const double pairs = static_cast<double>(a.count) * b.count,
+                   node_pairs = static_cast<double>(grids.of[link.a].count) * grids.of[link.b].count;
+      if (close || pairs < options.direct_below * node_pairs) kinds[k] = LinkKind::near_;
+    }
+  });
+  return {rows_of(tree.nodes.size(), links, kinds, LinkKind::far),
+          rows_of(tree.nodes.size(), links, kinds, LinkKind::mid),
+          rows_of(tree.nodes.size(), links, kinds, LinkKind::near_)};
+}
+
+} // namespace pointgi

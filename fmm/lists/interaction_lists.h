@@ -1,0 +1,31 @@
+#pragma once
+/// The links as each receiver reads them.
+#include "fmm/operators/grids.h"
+#include "octree/vmap/links.h"
+
+namespace pointgi {
+
+/// Rows of (source cluster, visible share), one row a receiving cluster, in the order of the links.
+struct SourceLists {
+  std::vector<std::uint32_t> begin; ///< row k is [begin[k], begin[k + 1]); one more than there are clusters
+  std::vector<std::uint32_t> source;
+  std::vector<float> share;
+};
+
+/// Both directions of every link. A point reads the near and mid rows of its leaf and of all clusters above it.
+struct InteractionLists {
+  SourceLists far, mid, near_;
+};
+
+struct ListOptions {
+  /// A far link of fewer than this many pairs of points for each pair of nodes goes as point pairs, which is then
+  /// cheaper and exact. 0: only where its splats are so close that they are more than points (FMM_CLOSE).
+  double direct_below = 1.5;
+};
+
+/// Throws std::invalid_argument on a link to a cluster that is not there, of a cluster with itself unless it is a near
+/// leaf, or with a share outside (0, 1].
+InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, const Grids& grids,
+                                        const ListOptions& options);
+
+} // namespace pointgi

@@ -1,0 +1,74 @@
+#include "fmm/solve/krylov.h"
+#include <Eigen/IterativeLinearSolvers>
+
+namespace pointgi {
+struct Transport; // I - rho H, as Eigen's solvers take a matrix
+} // namespace pointgi
+
+namespace Eigen::internal {
+template <>
+struct traits<pointgi::Transport> : traits<SparseMatrix<double>> {};
+} // namespace Eigen::internal
+
+namespace pointgi {
+
+struct Transport : Eigen::EigenBase<Transport> {
+  using Scalar = double;
+  using RealScalar = double;
+  using StorageIndex = int;
+  enum { ColsAtCompileTime = Eigen::Dynamic, MaxColsAtCompileTime = Eigen::Dynamic, IsRowMajor = false };
+
+  RadiosityOperator* exchange = nullptr;
+  const Eigen::VectorXd* albedo = nullptr;
+  mutable std::vector<double> irradiance = {};
+  mutable unsigned applies = 0;
+
+  Eigen::Index rows() const { return albedo->size(); }
+  Eigen::Index cols() const { return albedo->size(); }
+  template <class Right>
+  Eigen::Product<Transport, Right, Eigen::AliasFreeProduct> operator*(const Eigen::MatrixBase<Right>& x) const {
+    return {*this, x.derived()};
+  }
+};
+
+} // namespace pointgi
+
+namespace Eigen::internal {
+template <class Right>
+struct generic_product_impl<pointgi::Transport, Right, SparseShape, DenseShape, GemvProduct>
+    : generic_product_impl_base<pointgi::Transport, Right, generic_product_impl<pointgi::Transport, Right>> {
+  template <class Result>
+  static void scaleAndAddTo(Result& result, const pointgi::Transport& transport, const Right& x, const double& scale) {
+    const VectorXd b = x;
+    ++transport.applies;
+    transport.exchange->apply({b.data(), static_cast<std::size_t>(b.size())}, pointgi::Judge::before,
+                              transport.irradiance);
+    const Map<const VectorXd> h(transport.irradiance.data(), b.size());
+    result += scale * (b - transport.albedo->cwiseProduct(h));
+  }
+};
+} // namespace Eigen::internal
+
+namespace pointgi {
+
+KrylovResult solve_krylov(RadiosityOperator& exchange, const Eigen::VectorXd& emission, const Eigen::VectorXd& albedo,
+                          double tolerance, unsigned most_steps, Eigen::VectorXd& x) {
+  Transport transport;
+  transport.exchange = &exchange;
+  transport.albedo = &albedo;
+  Eigen::BiCGSTAB<Transport, Eigen::IdentityPreconditioner> solver;
+  solver.compute(transport);
+  solver.setTolerance(tolerance);
+  solver.setMaxIterations(static_cast<Eigen::Index>(most_steps));
+  const double before = (emission - transport * x).norm();
+  const Eigen::VectorXd found = solver.solveWithGuess(emission, x);
+  KrylovResult result;
+  result.steps = static_cast<unsigned>(solver.iterations());
+  result.applies = transport.applies;
+  // Its own residual is a recurrence; NaN after a breakdown.
+  result.useful = found.allFinite() && solver.error() * emission.norm() < before;
+  if (result.useful) x = found;
+  return result;
+}
+
+} // namespace pointgi

@@ -1,0 +1,152 @@
+#include "fmm/solve/solve.h"
+#include "fmm/solve/krylov.h"
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace pointgi {
+
+namespace {
+
+/// Steps of one call of Krylov's method, at most; a closed room of albedo 0.99 takes about ten.
+constexpr unsigned most_krylov_steps = 100;
+
+struct Problem {
+  RadiosityOperator& exchange;
+  Eigen::VectorXd emission, albedo;
+  View<double> area;
+
+  /// Sum of area |x| over the points, per colour.
+  std::array<double, 3> power(const Eigen::VectorXd& x) const {
+    std::array<double, 3> sum{};
+    for (std::size_t i = 0; i < area.size; ++i)
+      for (int c = 0; c < 3; ++c)
+        sum[c] += area[i] * std::abs(x[static_cast<Eigen::Index>(3 * i + c)]);
+    return sum;
+  }
+};
+
+void check(const RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
+           const SolveOptions& options) {
+  const std::size_t n = exchange.points();
+  if (emission.size != 3 * n || albedo.size != 3 * n || area.size != n)
+    throw std::invalid_argument("emission and albedo are not [points x 3], or area is not [points]");
+  if (!(options.tolerance > 0.0 && options.tolerance < 1.0))
+    throw std::invalid_argument("tolerance of the radiosity is not in (0, 1)");
+  if (!(options.largest_rate > 0.0 && options.largest_rate < 1.0) || options.first_sweeps < 2)
+    throw std::invalid_argument("rate of the radiosity's iteration not in (0, 1), or too few sweeps to judge it by");
+}
+
+/// B = E + rho H(B); what changed gives the residual of the B before, and its fall the rate.
+void sweep(Problem& problem, const std::array<double, 3>& emitted, Eigen::VectorXd& b, Solution& solution) {
+  std::vector<double> h;
+  problem.exchange.apply({b.data(), static_cast<std::size_t>(b.size())}, Judge::now, h);
+  const Eigen::Map<const Eigen::VectorXd> irradiance(h.data(), b.size());
+  const Eigen::VectorXd next = problem.emission + problem.albedo.cwiseProduct(irradiance);
+  const std::array<double, 3> change = problem.power(next - b);
+  double residual = 0.0;
+  for (int c = 0; c < 3; ++c)
+    if (emitted[c] > 0.0) residual = std::max(residual, change[c] / emitted[c]);
+  if (!solution.history.empty() && solution.history.back() > 0.0) solution.rate = residual / solution.history.back();
+  solution.history.push_back(residual);
+  solution.residual = residual;
+  ++solution.sweeps;
+  ++solution.applies;
+  b = next;
+}
+
+/// Jacobi sweeps that are left until the tolerance is reached, at the last sweep's rate.
+double sweeps_left(const Solution& solution, double tolerance) {
+  if (!(solution.rate < 1.0)) return INFINITY;
+  if (solution.rate <= 0.0) return 0.0;
+  return std::log(tolerance / solution.residual) / std::log(solution.rate);
+}
+
+/// Jacobi until converged, until the rate says that it keeps its light, or until `most` sweeps were made.
+bool jacobi(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options, unsigned most,
+            Eigen::VectorXd& b, Solution& solution) {
+  for (unsigned k = 0; k < most && solution.applies < options.most_applies; ++k) {
+    sweep(problem, emitted, b, solution);
+    if (!std::isfinite(solution.residual)) break;
+    if (solution.residual <= options.tolerance) {
+      solution.end = SolveEnd::converged;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Krylov and a sweep in turn. False when that did not end it.
+bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options, Eigen::VectorXd& b,
+                Solution& solution) {
+  constexpr int most_turns = 6; // judging mid links anew changes little: two are the rule
+  double inner = 0.3 * options.tolerance;
+  for (int turn = 0; turn < most_turns && solution.applies < options.most_applies; ++turn) {
+    const double before = solution.residual;
+    const KrylovResult result =
+        solve_krylov(problem.exchange, problem.emission, problem.albedo, inner, most_krylov_steps, b);
+    solution.krylov_steps += result.steps;
+    solution.applies += result.applies;
+    if (!result.useful) return false;
+    sweep(problem, emitted, b, solution);
+    if (solution.residual <= options.tolerance) {
+      solution.end = SolveEnd::converged;
+      return true;
+    }
+    if (!(solution.residual < 0.7 * before)) return false;
+    inner *= 0.3; // the power of the residual and Krylov's root mean square of it differ
+  }
+  return false;
+}
+
+} // namespace
+
+Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
+                         const SolveOptions& options) {
+  check(exchange, emission, albedo, area, options);
+  const auto vector_of = [](View<double> v) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data, static_cast<Eigen::Index>(v.size)));
+  };
+  Problem problem{exchange, vector_of(emission), vector_of(albedo), area};
+  Solution solution;
+  Eigen::VectorXd b = problem.emission;
+  const std::array<double, 3> emitted = problem.power(b);
+  const auto finish = [&] {
+    solution.radiosity.assign(b.data(), b.data() + b.size());
+    return solution;
+  };
+  if (!(emitted[0] + emitted[1] + emitted[2] > 0.0)) {
+    solution.end = SolveEnd::converged; // dark
+    return finish();
+  }
+  if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
+  const auto keeps = [&] { return !(solution.rate < options.largest_rate); };
+  if (!keeps() && options.krylov && sweeps_left(solution, options.tolerance) > options.patient_sweeps) {
+    const Eigen::VectorXd kept = b;
+    if (accelerate(problem, emitted, options, b, solution)) return finish();
+    if (!(solution.residual < solution.history[options.first_sweeps - 1])) {
+      b = kept; // worse than before: from there on as if it had not been
+      solution.rate = 0.0;
+    }
+  }
+  // In rounds: the rate is judged by sweeps that follow each other, and may rise as the fast parts of the light die out.
+  while (!keeps() && solution.applies < options.most_applies && std::isfinite(solution.residual)) {
+    if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
+    if (sweeps_left(solution, options.tolerance) > options.most_applies) break;
+  }
+  solution.end = keeps() ? SolveEnd::keeps_its_light : SolveEnd::stalled;
+  return finish();
+}
+
+std::string complaint_of(const Solution& solution) {
+  if (solution.end == SolveEnd::converged) return "";
+  const std::string figures = " after " + std::to_string(solution.applies) +
+                              " applies of the exchange the residual is " + std::to_string(solution.residual);
+  if (solution.end == SolveEnd::keeps_its_light)
+    return "the scene keeps " + std::to_string(100.0 * solution.rate) +
+           " % of its light at each bounce, so its radiosity does not settle:" + figures +
+           "; lower the albedo, or open the scene";
+  return "the radiosity did not converge:" + figures + "; a larger tolerance may be reached";
+}
+
+} // namespace pointgi
