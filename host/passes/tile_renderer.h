@@ -1,5 +1,6 @@
 #pragma once
 #include "host/passes/device_pools.h"
+#include "host/passes/light_paths.h"
 #include "host/scene/lighting.h"
 
 namespace pointgi {
@@ -14,9 +15,9 @@ struct TileSeconds {
 /// The picture's kernels in a variant, with all of their arguments but the tile's place. Borrows session and pools.
 class TileRenderer {
 public:
-  /// `side`: of the root cube, world units. Builds the program where it is not built yet.
+  /// `side`: of the root cube, world units; `paths`: by path tracing. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
-               const TraversalVariant& variant);
+               const TraversalVariant& variant, const std::optional<LightPaths>& paths = {});
 
   pg_uint samples() const { return params_.samples; }
 
@@ -31,7 +32,7 @@ private:
   const DevicePools& pools_;
   RenderParams params_;
   RayGrouping grouping_;
-  WorkGroup group_;
+  WorkGroup eye_group_, shade_group_;
   cl::Kernel eye_rays_, shade_;
   Buffer<RenderParams> device_params_;
   Buffer<Material> materials_;

@@ -20,6 +20,11 @@ std::string group_options(WorkGroup group) {
   return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
 }
 
+std::string feature_options(const SceneFeatures& features) {
+  return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
+         (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "");
+}
+
 } // namespace
 
 std::string name_of(const TraversalVariant& v) {
@@ -58,11 +63,12 @@ Program eye_rays_program(const TraversalVariant& variant) {
 }
 
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features) {
-  std::string options = group_options(variant.group);
-  if (features.delta_lights) options += " -D HAS_DELTA_LIGHTS";
-  if (features.emitters) options += " -D HAS_EMITTERS";
-  if (features.environment) options += " -D HAS_ENVIRONMENT";
-  return program(variant, "render/shade.cl", options);
+  return program(variant, "render/shade.cl", group_options(variant.group) + feature_options(features));
+}
+
+Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
+  return program(variant, "render/path.cl",
+                 group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));
 }
 
 } // namespace pointgi

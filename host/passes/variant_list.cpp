@@ -148,6 +148,7 @@ std::vector<ProgramUse> all_programs() {
     add(eye_rays_program(v), cpu, gpu);
     add(shade_program(v, {}), cpu, gpu);
     add(shade_program(v, {true, true, true}), cpu, gpu);
+    add(path_program(v, {true, true, true}, true), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);
   }
   return uses;
