@@ -15,7 +15,8 @@ struct RenderOptions {
   std::optional<int> spp;
   std::string quality = "normal"; ///< draft: a quarter of the samples, high: four times
   std::optional<double> exposure;
-  std::string integrator = "pointgi";
+  std::string integrator = "pointgi"; ///< or "path": unbiased path tracing, the truth to measure others by
+  std::string paths;                  ///< of the path tracer: the classes that count (host/passes/light_paths.h)
   std::string device;
   std::optional<unsigned> seed;
   std::vector<std::string> overrides; ///< key.path=value
@@ -41,8 +42,14 @@ struct ProfileOptions {
   bool quiet = false;
 };
 
+struct CompareOptions {
+  std::string first, second; ///< .exr
+  bool json = false;
+};
+
 ExitCode run_render(const RenderOptions& options);
 ExitCode run_profile(const ProfileOptions& options);
+ExitCode run_compare(const CompareOptions& options);
 ExitCode run_info(const std::string& file);
 ExitCode run_devices(bool json, bool check, const std::string& device);
 

@@ -96,8 +96,14 @@ int run(int argc, char** argv) {
                    "samples a pixel: draft (a quarter of the scene's), normal, high (four times)")
       ->check(CLI::IsMember({"draft", "normal", "high"}));
   render_command->add_option("--exposure", render.exposure, "brightens the PNG by this many stops (default 0)");
-  render_command->add_option("--integrator", render.integrator,
-                             "how light is computed (default pointgi, the only one so far)");
+  render_command
+      ->add_option("--integrator", render.integrator,
+                   "how light is computed: pointgi (default), or path: slow unbiased path tracing, the truth to "
+                   "measure by; ends paths by roulette, and at render.max_depth surface points where the scene says so")
+      ->check(CLI::IsMember({"pointgi", "path"}));
+  render_command->add_option("--paths", render.paths,
+                             "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
+                             "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, + one or more");
   render_command->add_option(
       "--device", render.device,
       "index, part of a name, cpu or gpu; default: a GPU if there is one (see: pointgi devices)");
@@ -148,6 +154,12 @@ int run(int argc, char** argv) {
   CLI::App* info_command = app.add_subcommand("info", "what is in a cloud or scene");
   info_command->add_option("FILE.ply|SCENE.toml", info_file, "what to look at")->required();
 
+  CompareOptions compare;
+  CLI::App* compare_command = app.add_subcommand("compare", "how far two pictures are apart");
+  compare_command->add_option("A.exr", compare.first, "the picture to judge")->required();
+  compare_command->add_option("B.exr", compare.second, "what it is held against: the truth")->required();
+  compare_command->add_flag("--json", compare.json, "as JSON");
+
   bool json = false, check = false;
   std::string checked_device;
   CLI::App* devices_command = app.add_subcommand("devices", "the OpenCL devices");
@@ -177,6 +189,7 @@ int run(int argc, char** argv) {
   profile.device = environment_or(profile.device, "POINTGI_DEVICE");
   profile.quiet = render.quiet;
   if (profile_command->parsed()) return code_of(run_profile(profile));
+  if (compare_command->parsed()) return code_of(run_compare(compare));
   if (info_command->parsed()) return code_of(run_info(info_file));
   return code_of(run_devices(json, check, checked_device));
 }

@@ -62,17 +62,22 @@ std::string output_of(const RenderOptions& options) {
 }
 
 /// The stages that later steps of light transport will fill; said so, not left out (method.md §7).
-void skip_indirect_stages(const Scene& scene, const DeviceLighting& lighting, StageLog& stages) {
+void skip_indirect_stages(const Scene& scene, const DeviceLighting& lighting, bool by_paths, StageLog& stages) {
   const bool lit = !lighting.delta.empty() || !lighting.emitters.empty() || lighting.has_environment;
-  const std::string reason = lit ? "this version renders direct light only" : "the scene has no light and no emission";
+  const std::string why = by_paths ? "paths are traced" : "this version renders direct light only";
+  const std::string reason = lit ? why : "the scene has no light and no emission";
   stages.skip("vmap", reason);
   stages.skip("fmm", reason);
   stages.skip("photon", "no specular material");
-  if (scene.radiosity.place)
-    spdlog::warn("{}: [radiosity] has no effect: this version renders direct light only",
-                 scene.radiosity.place->text());
+  if (scene.radiosity.place) spdlog::warn("{}: [radiosity] has no effect: {}", scene.radiosity.place->text(), why);
   if (scene.caustics.place)
     spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
+}
+
+/// The paths to trace, or nothing where no path is traced.
+std::optional<LightPaths> paths_of(const RenderOptions& options, const Scene& scene) {
+  if (options.integrator != "path") return std::nullopt;
+  return light_paths(options.paths, scene.render.max_depth);
 }
 
 PictureAttributes attributes_of(const Scene& scene, const RenderOptions& options, const Session& session,
@@ -84,6 +89,8 @@ PictureAttributes attributes_of(const Scene& scene, const RenderOptions& options
   attributes.text["pointgi/device"] = session.info().name + " (" + session.info().platform + ")";
   attributes.text["pointgi/scene_hash"] = hash;
   attributes.text["pointgi/quality"] = options.quality;
+  attributes.text["pointgi/integrator"] = options.integrator;
+  if (!options.paths.empty()) attributes.text["pointgi/paths"] = options.paths;
   attributes.number["samplesPerPixel"] = scene.render.spp;
   attributes.world_to_camera = world_to_camera(scene);
   attributes.world_to_ndc = world_to_ndc(scene);
@@ -142,9 +149,9 @@ VariantChoice choose_for(const Scene& scene, const DeviceInfo& device) {
 }
 
 Scene checked_scene(const RenderOptions& options) {
-  if (options.integrator != "pointgi")
-    throw Error(ExitCode::usage,
-                "--integrator " + options.integrator + ": this version has the integrator \"pointgi\" only");
+  if (options.integrator != "path" && !options.paths.empty())
+    throw Error(ExitCode::usage, "--paths: only --integrator path can choose the light paths that count");
+  light_paths(options.paths, {}); // before a large scene is read
   Scene scene = load_any(options.input, overrides_of(options));
   if (!options.spp && options.quality != "normal") {
     const double factor = options.quality == "draft" ? 0.25 : 4.0;
@@ -214,16 +221,19 @@ ExitCode run_render(const RenderOptions& options) {
   stages.finish(stats.octree.nodes, "nodes");
 
   const DeviceLighting lighting = device_lighting(scene, placed.frame, points_of(pools));
-  skip_indirect_stages(scene, lighting, stages);
-  PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window, film_channels(),
+  const std::optional<LightPaths> paths = paths_of(options, scene);
+  skip_indirect_stages(scene, lighting, paths.has_value(), stages);
+  PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
+                       film_channels(paths.has_value()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
-  const bool written = render_picture(session, on_device, {window, lighting, placed.frame, ids, variant}, writer,
+  const bool written = render_picture(session, on_device, {window, lighting, placed.frame, ids, variant, paths}, writer,
                                       options.quiet, stats.render, stages);
   if (!written)
     throw Error(ExitCode::interrupted, "interrupted before the first rows were finished; nothing was written");
   warn_of_view(stats.render, placed.frame, scene);
   if (!options.stats_file.empty()) {
     stats.command = "render";
+    stats.integrator = options.integrator;
     stats.variant = choice;
     stats.scene = &scene;
     stats.session = &session;

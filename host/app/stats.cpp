@@ -51,6 +51,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   out["variant"]["source"] = stats.variant.source;
   const RenderTotals& r = stats.render;
   out["render"] = {
+      {"integrator", stats.integrator},
       {"rays", r.rays},
       {"eye_rays", r.eye_rays},
       {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},

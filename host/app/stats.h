@@ -10,7 +10,7 @@ namespace pointgi {
 
 /// What `--stats` writes (interface.md: Stats).
 struct Stats {
-  std::string command;
+  std::string command, integrator;
   const Scene* scene = nullptr;
   OctreeSummary octree;
   const Session* session = nullptr;

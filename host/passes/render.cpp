@@ -1,6 +1,8 @@
 #include "host/passes/render.h"
 #include "host/passes/tile_renderer.h"
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <cstring>
 
 namespace pointgi {
@@ -32,9 +34,20 @@ enum Channel {
   c_py,
   c_pz,
   c_z,
+  c_variance_r,
+  c_variance_g,
+  c_variance_b,
   c_id,
-  channel_count
+  c_diffuse_r, // only where there is indirect light
+  c_diffuse_g,
+  c_diffuse_b
 };
+
+/// Variance of the mean of `samples` radiances: that of one, by their squared differences from the mean, over their
+/// number. Of one sample nothing is known.
+double variance_of_mean(double spread, double samples) {
+  return samples > 1.0 ? std::min(spread / (samples * (samples - 1.0)), double{FLT_MAX}) : INFINITY;
+}
 
 /// Film sums of one pixel into the band's planes: means, world units, world radiance.
 void resolve_pixel(const float* film, const RenderRequest& request, float samples, std::size_t at, Band& band) {
@@ -42,8 +55,11 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
   const double scale = request.lighting.radiance.scale;
   for (int k = 0; k < 3; ++k) {
     const double direct = scale * (film[FILM_DIRECT + k] / samples);
-    set(c_r + k, direct);
+    const double diffuse = request.paths ? scale * (film[FILM_DIFFUSE + k] / samples) : 0.0;
+    set(c_r + k, direct + diffuse);
     set(c_direct_r + k, direct);
+    if (request.paths) set(c_diffuse_r + k, diffuse);
+    set(c_variance_r + k, variance_of_mean(scale * scale * double{film[FILM_SPREAD + k]}, samples));
   }
   const float hits = film[FILM_COVERAGE];
   set(c_a, hits / samples);
@@ -70,12 +86,15 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
 
 } // namespace
 
-std::vector<ChannelName> film_channels() {
+std::vector<ChannelName> film_channels(bool indirect) {
   std::vector<ChannelName> names;
-  for (const char* name : {"R", "G", "B", "A", "Direct.R", "Direct.G", "Direct.B", "Albedo.R", "Albedo.G", "Albedo.B",
-                           "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "Z"})
+  for (const char* name :
+       {"R",   "G",   "B",   "A",   "Direct.R", "Direct.G", "Direct.B", "Albedo.R",   "Albedo.G",   "Albedo.B",
+        "N.X", "N.Y", "N.Z", "P.X", "P.Y",      "P.Z",      "Z",        "Variance.R", "Variance.G", "Variance.B"})
     names.push_back({name, false});
   names.push_back({"PointId", true});
+  for (const char* name : {"Diffuse.R", "Diffuse.G", "Diffuse.B"})
+    if (indirect) names.push_back({name, false});
   return names;
 }
 
@@ -101,16 +120,16 @@ void resolve_tile(const std::vector<float>& film, int column, int columns, const
 RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
-  TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant);
+  TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths);
+  const std::size_t channels = film_channels(request.paths.has_value()).size();
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;
   int most_columns = first_columns; // grows or shrinks towards launch_seconds
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
-    Band band{
-        window.y0 + row, rows, width,
-        std::vector<std::vector<float>>(channel_count, std::vector<float>(static_cast<std::size_t>(width) * rows))};
+    Band band{window.y0 + row, rows, width,
+              std::vector<std::vector<float>>(channels, std::vector<float>(static_cast<std::size_t>(width) * rows))};
     for (int column = 0; column < width;) {
       const int columns = std::min(most_columns, width - column);
       double longest = 0.0;

@@ -2,6 +2,7 @@
 /// The render stage: a window of the image, band after band (kernels/render).
 #include "host/image/picture_writer.h"
 #include "host/passes/device_pools.h"
+#include "host/passes/light_paths.h"
 #include "host/scene/lighting.h"
 #include <functional>
 
@@ -26,8 +27,9 @@ struct RenderTotals {
   }
 };
 
-/// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist.
-std::vector<ChannelName> film_channels();
+/// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist. `indirect`: light
+/// from surface to surface is among them.
+std::vector<ChannelName> film_channels(bool indirect);
 
 struct RenderRequest {
   PixelWindow window;
@@ -35,6 +37,7 @@ struct RenderRequest {
   const Frame& frame;
   View<std::uint32_t> point_ids; ///< id to write for each point of the pool
   TraversalVariant variant;
+  std::optional<LightPaths> paths; ///< by path tracing, of these; else direct light
 };
 
 /// Renders the window's rows from the top and hands finished bands to `take`, after each launch `progress` (share done,

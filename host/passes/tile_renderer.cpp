@@ -4,13 +4,20 @@
 namespace pointgi {
 
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
-                           const TraversalVariant& variant)
-    : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping), group_(variant.group) {
+                           const TraversalVariant& variant, const std::optional<LightPaths>& paths)
+    : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping),
+      eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
   const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
-  const Program eye_rays = eye_rays_program(variant), shade = shade_program(variant, features);
+  if (paths) {
+    params_.path_classes = paths->classes;
+    params_.most_bounces = paths->most_bounces;
+  }
+  const Program eye_rays = eye_rays_program(variant),
+                shade = paths ? path_program(variant, features, paths->classes != ALL_PATH_CLASSES)
+                              : shade_program(variant, features);
   eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");
-  shade_ = session.kernel(shade.file, shade.options, "shade_pixels");
+  shade_ = session.kernel(shade.file, shade.options, paths ? "path_pixels" : "shade_pixels");
   device_params_ = session.upload(&params_, 1);
   materials_ = session.upload(lighting.materials);
   delta_ = session.upload(lighting.delta);
@@ -24,17 +31,18 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
     hits_ = session_.allocate<EyeHits>(width * height);
   }
   const auto parts = [](std::size_t whole, std::size_t size) { return (whole + size - 1) / size; };
-  const LaunchShape pixels =
-      LaunchShape::grid(parts(width, group_.size() / GRID_RAYS) * group_.x, height * group_.y, group_.x, group_.y);
+  const auto pixels = [&](WorkGroup g) {
+    return LaunchShape::grid(parts(width, g.size() / GRID_RAYS) * g.x, height * g.y, g.x, g.y);
+  };
   const LaunchShape squares = LaunchShape::grid(parts(width, PACKET_COLUMNS), parts(height, PACKET_ROWS), 1, 1);
   const auto number = [](auto value) { return static_cast<cl_uint>(value); };
   TileSeconds seconds;
-  seconds.eye = session_.launch(eye_rays_, grouping_ == RayGrouping::packet ? squares : pixels, pools_.nodes,
-                                pools_.leaves, pools_.points, device_params_, hits_, number(x), number(y),
+  seconds.eye = session_.launch(eye_rays_, grouping_ == RayGrouping::packet ? squares : pixels(eye_group_),
+                                pools_.nodes, pools_.leaves, pools_.points, device_params_, hits_, number(x), number(y),
                                 number(columns), number(rows), number(first_sample));
-  seconds.shade = session_.launch(shade_, pixels, pools_.nodes, pools_.leaves, pools_.points, device_params_,
-                                  materials_, delta_, emitters_, hits_, film_, number(x), number(y), number(columns),
-                                  number(rows), number(first_sample));
+  seconds.shade = session_.launch(shade_, pixels(shade_group_), pools_.nodes, pools_.leaves, pools_.points,
+                                  device_params_, materials_, delta_, emitters_, hits_, film_, number(x), number(y),
+                                  number(columns), number(rows), number(first_sample));
   return seconds;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// A tile of the picture on the device: hits of its eye rays, then its film.
 #include "host/passes/device_pools.h"
+#include "host/passes/light_paths.h"
 #include "host/scene/lighting.h"
 
 namespace pointgi {
@@ -15,9 +16,9 @@ struct TileSeconds {
 /// The picture's kernels in a variant, with all of their arguments but the tile's place. Borrows session and pools.
 class TileRenderer {
 public:
-  /// `side`: of the root cube, world units. Builds the programs where they are not built yet.
+  /// `side`: of the root cube, world units; `paths`: by path tracing. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
-               const TraversalVariant& variant);
+               const TraversalVariant& variant, const std::optional<LightPaths>& paths = {});
 
   pg_uint samples() const { return params_.samples; }
 
@@ -35,7 +36,7 @@ private:
   const DevicePools& pools_;
   RenderParams params_;
   RayGrouping grouping_;
-  WorkGroup group_;
+  WorkGroup eye_group_, shade_group_;
   cl::Kernel eye_rays_, shade_;
   Buffer<RenderParams> device_params_;
   Buffer<Material> materials_;

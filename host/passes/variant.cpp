@@ -21,11 +21,8 @@ std::string group_options(WorkGroup group) {
 }
 
 std::string feature_options(const SceneFeatures& features) {
-  std::string options;
-  if (features.delta_lights) options += " -D HAS_DELTA_LIGHTS";
-  if (features.emitters) options += " -D HAS_EMITTERS";
-  if (features.environment) options += " -D HAS_ENVIRONMENT";
-  return options;
+  return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
+         (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "");
 }
 
 } // namespace
@@ -75,6 +72,11 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 
 Program segments_program(const TraversalVariant& variant) {
   return program(variant, "visibility/segments.cl", "");
+}
+
+Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
+  return program(variant, "render/path.cl",
+                 group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));
 }
 
 } // namespace pointgi

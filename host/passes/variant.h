@@ -55,6 +55,10 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);
 
+/// The picture by path tracing, path_pixels: a pixel a work-group of 8x4; never with fast math, for it is what others
+/// are measured by. `some_paths`: params.path_classes leaves some out.
+Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);
+
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
 

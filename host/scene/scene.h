@@ -28,8 +28,8 @@ struct RenderSettings {
   int height = 480;
   int spp = 32; ///< samples a pixel
   unsigned seed = 1;
-  double exposure = 0.0; ///< stops, for the PNG only
-  int max_depth = 8;
+  double exposure = 0.0;        ///< stops, for the PNG only
+  std::optional<int> max_depth; ///< most surface points of a path from light to eye; absent: no limit
   bool jitter = true;
 };
 

@@ -36,14 +36,16 @@ typedef struct LightSample {
   float radius;
 } LightSample;
 
+/* Rays off a surface start a little behind it: where two walls meet, rounding may put the point a few float steps beyond
+ * the other wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
+#define BEHIND_SURFACE -4e-6f
+
 /* Whether nothing stands between the surface and the light; counts its ray. */
 static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* light, float step_delta, float* rays) {
   Ray ray;
   ray.origin = s->position;
   ray.direction = light->towards;
-  /* A little behind the surface: where two walls meet, rounding may put the point a few float steps beyond the other
-   * wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
-  ray.t_min = -4e-6f;
+  ray.t_min = BEHIND_SURFACE;
   ray.t_max = light->distance;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;

@@ -8,22 +8,32 @@ typedef struct SampleId {
   uint2 pixel;
   uint sample; /* of the pixel; sample % 32 is its place in the 8x4 grid, sample / 32 the pass */
   uint seed;
+  uint vertex; /* of the ray's path: 0 what the camera sees, then the places where bounced rays end */
 } SampleId;
+
+#define VERTEX_DIMENSIONS 8u /* uses of random numbers at one vertex */
 
 /* Four numbers in [0,1) for one use, `dimension`, of one ray. */
 static inline float4 random4(SampleId id, uint dimension) {
+  dimension += VERTEX_DIMENSIONS * id.vertex;
   const uint4 h = pcg4d((uint4)(id.pixel.x, id.pixel.y, id.sample, id.seed * 0x9E3779B9u + dimension));
   return (float4)(unit_float(h.x), unit_float(h.y), unit_float(h.z), unit_float(h.w));
 }
 
-/* Two numbers in [0,1), stratified over the pixel's samples: the (0,2)-sequence of van der Corput and Sobol, whose every
- * power-of-two prefix is stratified, so that 1, 8 or 64 samples are all served well (Kollig and Keller, "Efficient
- * Multidimensional Sampling", 2002). A random XOR a pixel and use makes it independent of the place in the pixel.
- * z and w are plain random numbers. */
+/* Two numbers in [0,1), stratified over 32 samples of the pixel: the (0,2)-sequence of van der Corput and Sobol, whose
+ * every power-of-two prefix is stratified, so that 1, 8 or 32 samples are all served well (Kollig and Keller, "Efficient
+ * Multidimensional Sampling", 2002). A random XOR a pixel, use and pass of 32: one XOR for all passes would tie each cell
+ * of the pixel's grid, and each use, to the same part of every other for good, and the mean of many samples would
+ * converge to something else. Only at a path's first vertex; behind it two uses could not both be stratified without
+ * such ties. z and w are plain random numbers. */
 static inline float4 stratified4(SampleId id, uint dimension) {
-  const uint4 scramble = pcg4d((uint4)(id.pixel.x, id.pixel.y, 0x68E31DA4u, id.seed * 0x9E3779B9u + dimension));
+  const float4 r = random4(id, dimension);
+  if (id.vertex > 0u)
+    return r;
+  const uint4 scramble = pcg4d((uint4)(id.pixel.x, id.pixel.y, 0x68E31DA4u + id.sample / GRID_RAYS,
+                                       id.seed * 0x9E3779B9u + dimension));
   uint first = 0u, second = 0u, bit = 1u << 31, direction = 1u << 31;
-  for (uint rest = id.sample; rest != 0u; rest >>= 1) {
+  for (uint rest = id.sample % GRID_RAYS; rest != 0u; rest >>= 1) {
     if (rest & 1u) {
       first ^= bit;
       second ^= direction;
@@ -31,7 +41,6 @@ static inline float4 stratified4(SampleId id, uint dimension) {
     bit >>= 1;
     direction ^= direction >> 1;
   }
-  const float4 r = random4(id, dimension);
   return (float4)(unit_float(first ^ scramble.x), unit_float(second ^ scramble.y), r.z, r.w);
 }
 

@@ -4,7 +4,7 @@
  *                      exit plane follows without rounding, so the ray moves on at every scale
  *   STEP_ABSOLUTE      the thesis' way: the position moves past the exit plane by an absolute delta and is located anew;
  *                      thin cells are jumped over when delta is large, and the ray may stall when it is small
- * What every form gives: trace_closest, trace_any, blend_others (kernels/lib/traversal.cl). */
+ * What every form gives: trace_closest, trace_closest_from, trace_any, blend_others (kernels/lib/traversal.cl). */
 #include "lib/octree_descent.cl"
 #include "lib/ray_splat.cl"
 #include "lib/blend.cl"
@@ -106,6 +106,30 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
       const float t = ray_disc(ray.origin, ray.direction, pool_point_texel(POINT_TEXELS * i),
                                pool_point_texel(POINT_TEXELS * i + 1u).xyz, &q);
       if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat))) {
+        best.t = t;
+        best.splat = i;
+      }
+    })
+  } while (walk.t_exit < best.t && walk_next(POOL_ARGS, &walk));
+  return best;
+}
+
+/* trace_closest of a ray that leaves a surface: what belongs to the ends does not count. */
+static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+  Hit best = {ray.t_max, NO_SPLAT};
+  float t_enter, t_leave;
+  if (!ray_meets_root(ray, &t_enter, &t_leave))
+    return best;
+  Walk walk;
+  walk_start(POOL_ARGS, &walk, ray, t_enter);
+  do {
+    FOR_SPLATS_OF_LEAF(walk.node, i, {
+      const float4 centre = pool_point_texel(POINT_TEXELS * i);
+      const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
+      float q;
+      const float t = ray_disc(ray.origin, ray.direction, centre, normal, &q);
+      if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
+          !belongs_to_ends(ends, ray.t_max, t, centre.w, normal)) {
         best.t = t;
         best.splat = i;
       }

@@ -2,7 +2,7 @@
  * Written in vectors of the language, because CPU compilers do not vectorise diverging work-items; for devices whose
  * work-items have vector registers of their own.
  *   WIDE_LANES  splats a block, 8 or 16
- * What every form gives: trace_closest, trace_any, blend_others (kernels/lib/traversal.cl). */
+ * What every form gives: trace_closest, trace_closest_from, trace_any, blend_others (kernels/lib/traversal.cl). */
 #ifndef WIDE_LANES
 #define WIDE_LANES 8
 #endif
@@ -204,6 +204,43 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   return best;
 }
 
+/* belongs_to_ends in lanes. */
+static inline lanes_i lanes_of_ends(ShadowEnds ends, float t_max, const BlockHits* h) {
+  const lanes_f facing_origin = fma(h->nx, (lanes_f)(ends.origin_normal.x),
+                                    fma(h->ny, (lanes_f)(ends.origin_normal.y), h->nz * ends.origin_normal.z));
+  const lanes_f facing_target = fma(h->nx, (lanes_f)(ends.target_normal.x),
+                                    fma(h->ny, (lanes_f)(ends.target_normal.y), h->nz * ends.target_normal.z));
+  const lanes_f before = t_max - h->t;
+  return ((h->t < SELF_HIT_REACH * (ends.origin_radius + h->radius)) & (facing_origin > SELF_HIT_COSINE)) |
+         ((h->t < COINCIDENT) & (facing_origin < -SELF_HIT_COSINE)) |
+         ((before < SELF_HIT_REACH * (ends.target_radius + h->radius)) & (facing_target > SELF_HIT_COSINE)) |
+         ((before < COINCIDENT) & (facing_target < -SELF_HIT_COSINE));
+}
+
+/* trace_closest of a ray that leaves a surface: what belongs to the ends does not count. */
+static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+  Hit best = {ray.t_max, NO_SPLAT};
+  const WideRay wide = wide_ray(ray);
+  WALK_FROM_ROOT(walk);
+  for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
+    FOR_BLOCKS_OF_LEAF(leaf, block, {
+      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const lanes_u index = h.first + LANE_NUMBERS;
+      const lanes_i met = h.inside & (h.t > ray.t_min) &
+                          ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
+      if (any_lane(met)) {
+        const lanes_i nearer = met & ~lanes_of_ends(ends, ray.t_max, &h);
+        if (any_lane(nearer)) {
+          const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
+          best.t = smallest_lane(t);
+          best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
+        }
+      }
+    })
+  }
+  return best;
+}
+
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
 static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   const WideRay wide = wide_ray(ray);
@@ -212,21 +249,8 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
-      if (any_lane(hit)) { /* belongs_to_ends in lanes */
-        const lanes_f facing_origin = fma(h.nx, (lanes_f)(ends.origin_normal.x),
-                                          fma(h.ny, (lanes_f)(ends.origin_normal.y), h.nz * ends.origin_normal.z));
-        const lanes_f facing_target = fma(h.nx, (lanes_f)(ends.target_normal.x),
-                                          fma(h.ny, (lanes_f)(ends.target_normal.y), h.nz * ends.target_normal.z));
-        const lanes_f before = ray.t_max - h.t;
-        const lanes_i at_origin =
-            ((h.t < SELF_HIT_REACH * (ends.origin_radius + h.radius)) & (facing_origin > SELF_HIT_COSINE)) |
-            ((h.t < COINCIDENT) & (facing_origin < -SELF_HIT_COSINE));
-        const lanes_i at_target =
-            ((before < SELF_HIT_REACH * (ends.target_radius + h.radius)) & (facing_target > SELF_HIT_COSINE)) |
-            ((before < COINCIDENT) & (facing_target < -SELF_HIT_COSINE));
-        if (any_lane(hit & ~at_origin & ~at_target))
-          return true;
-      }
+      if (any_lane(hit) && any_lane(hit & ~lanes_of_ends(ends, ray.t_max, &h)))
+        return true;
     })
   }
   return false;

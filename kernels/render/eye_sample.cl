@@ -3,6 +3,37 @@
 #include "lib/direct_light.cl"
 #include "render/camera.cl"
 
+#define INVERSE_PI 0.31830989f
+
+#if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
+#define HAS_LIGHT
+#endif
+
+/* What the film keeps of the surface that an eye ray meets; the camera is t_start behind the ray's origin. */
+static inline void add_surface(__constant RenderParams* params, Ray ray, float t_start, const Surface* s, float* sums) {
+  sums[FILM_COVERAGE] += 1.0f;
+  sums[FILM_ALBEDO] += s->albedo.x;
+  sums[FILM_ALBEDO + 1] += s->albedo.y;
+  sums[FILM_ALBEDO + 2] += s->albedo.z;
+  __constant Camera* camera = &params->camera;
+  const float3 axis = cross(load3_constant(camera->step_y), load3_constant(camera->step_x));
+  sums[FILM_DEPTH] += (t_start + s->t) * fabs(dot3(normalize3(axis), ray.direction));
+  sums[FILM_NORMAL] += s->normal.x;
+  sums[FILM_NORMAL + 1] += s->normal.y;
+  sums[FILM_NORMAL + 2] += s->normal.z;
+  sums[FILM_POSITION] += s->position.x;
+  sums[FILM_POSITION + 1] += s->position.y;
+  sums[FILM_POSITION + 2] += s->position.z;
+  sums[FILM_BACK_FACE] += s->front ? 0.0f : 1.0f;
+}
+
+/* Once a sample, in one place: from several, compilers make an address of it, and the sums stand in memory. */
+static inline void add_direct(float3 radiance, float* sums) {
+  sums[FILM_DIRECT] += radiance.x;
+  sums[FILM_DIRECT + 1] += radiance.y;
+  sums[FILM_DIRECT + 2] += radiance.z;
+}
+
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
@@ -10,25 +41,12 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   uint point = FILM_NO_POINT;
   float3 radiance = (float3)(0.0f);
   sums[FILM_RAYS] += 1.0f;
-  if (blended_surface(POOL_ARGS, ray, hit, &s, &sums[FILM_RAYS])) {
+  if (blended_surface(POOL_ARGS, ray, start_in_the_open(), hit, &s, &sums[FILM_RAYS])) {
     point = s.splat;
-    sums[FILM_COVERAGE] += 1.0f;
-    sums[FILM_ALBEDO] += s.albedo.x;
-    sums[FILM_ALBEDO + 1] += s.albedo.y;
-    sums[FILM_ALBEDO + 2] += s.albedo.z;
-    __constant Camera* camera = &lights.params->camera;
-    const float3 axis = cross(load3_constant(camera->step_y), load3_constant(camera->step_x));
-    sums[FILM_DEPTH] += (t_start + s.t) * fabs(dot3(normalize3(axis), ray.direction));
-    sums[FILM_NORMAL] += s.normal.x;
-    sums[FILM_NORMAL + 1] += s.normal.y;
-    sums[FILM_NORMAL + 2] += s.normal.z;
-    sums[FILM_POSITION] += s.position.x;
-    sums[FILM_POSITION + 1] += s.position.y;
-    sums[FILM_POSITION + 2] += s.position.z;
-    sums[FILM_BACK_FACE] += s.front ? 0.0f : 1.0f;
+    add_surface(lights.params, ray, t_start, &s, sums);
     if (s.front) {
-#if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
-      radiance = s.albedo * 0.31830989f * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
+#ifdef HAS_LIGHT
+      radiance = s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
 #endif
 #ifdef HAS_EMITTERS
       radiance += load3(lights.materials[s.material].emission);
@@ -37,9 +55,6 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   } else {
     radiance = load3_constant(lights.params->environment);
   }
-  /* Added in one place: from several, compilers make an address of it, and the sums stand in memory. */
-  sums[FILM_DIRECT] += radiance.x;
-  sums[FILM_DIRECT + 1] += radiance.y;
-  sums[FILM_DIRECT + 2] += radiance.z;
+  add_direct(radiance, sums);
   return point;
 }

@@ -25,16 +25,21 @@ typedef struct Camera {
 typedef struct RenderParams {
   Camera camera;        /* bytes 0-63 */
   float environment[3]; /* bytes 64-75: radiance from every direction, scaled */
-  pg_uint pad2;
+  pg_uint most_bounces; /* bytes 76-79: of the path tracer: no path has more surface points; or NO_BOUNCE_LIMIT */
   pg_uint samples;      /* bytes 80-83: samples a pixel */
   pg_uint seed;         /* bytes 84-87 */
   pg_uint jitter;       /* bytes 88-91: 0: samples at the centres of their strata */
   pg_uint delta_lights; /* bytes 92-95: number of point and directional lights */
   pg_uint emitters;     /* bytes 96-99: number of emitting splats */
   float step_delta;     /* bytes 100-103: the absolute-delta variant's delta, root cube units */
+  pg_uint path_classes; /* bytes 104-107: of the path tracer: bit k: paths of k surface points count (L D..D E); the
+                           last bit: those of as many or more */
   pg_uint pad0;
-  pg_uint pad1;
 } RenderParams;
+
+#define ALL_PATH_CLASSES 0xffffffffu
+#define LAST_PATH_CLASS 31u
+#define NO_BOUNCE_LIMIT 0xffffffffu
 
 /* What the 32 eye rays of a pixel meet, in the order of its samples. */
 typedef struct EyeHits {
@@ -65,7 +70,7 @@ typedef struct Material {
 
 /* One pixel of the film, FILM_CHANNELS scalars. Radiances are scaled means over the pixel's samples; Z, N, P and albedo
  * are means over the samples that hit a splat. */
-#define FILM_DIRECT 0     /* 3: emission, environment and direct light */
+#define FILM_DIRECT 0     /* 3: emission, environment and direct light: LE, LDE */
 #define FILM_COVERAGE 3   /* share of samples that hit a splat */
 #define FILM_ALBEDO 4     /* 3 */
 #define FILM_DEPTH 7      /* distance from the camera plane, root cube units */
@@ -73,9 +78,11 @@ typedef struct Material {
 #define FILM_POSITION 11  /* 3: root cube */
 #define FILM_BACK_FACE 14 /* share of samples that met a back face */
 #define FILM_RAYS 15      /* rays traced for the pixel, eye and shadow */
-#define FILM_SUMS 16      /* channels above are sums over samples; below not */
-#define FILM_POINT 16     /* as_float(index into the point pool) of the first sample that hit, or FILM_NO_POINT */
-#define FILM_CHANNELS 17
+#define FILM_DIFFUSE 16   /* 3: light from surface to surface: LDD+E */
+#define FILM_SUMS 19      /* channels above are sums over samples; below not */
+#define FILM_POINT 19     /* as_float(index into the point pool) of the first sample that hit, or FILM_NO_POINT */
+#define FILM_SPREAD 20    /* 3: sum over the samples of (radiance - mean)^2, scaled */
+#define FILM_CHANNELS 23
 #define FILM_NO_POINT 0xffffffffu
 
 #endif

@@ -1,0 +1,64 @@
+/* From the 32 samples of a pixel to its film. */
+#include "shared/render_types.h"
+
+/* What the work-items of one pixel leave for each other. */
+typedef struct PixelSamples {
+  float sums[FILM_SUMS][GRID_RAYS];
+  uint points[GRID_RAYS];
+} PixelSamples;
+
+static inline void keep_sample(const float* sums, uint point, uint lane, __local PixelSamples* samples) {
+  for (int c = 0; c < FILM_SUMS; ++c)
+    samples->sums[c][lane] = sums[c];
+  samples->points[lane] = point;
+}
+
+/* In one order on every device. */
+static inline float sum_of(const __local float* of) {
+  float sum = 0.0f;
+  for (int i = 0; i < GRID_RAYS; ++i)
+    sum += of[i];
+  return sum;
+}
+
+/* Radiance of one colour, and its spread: of this pass about its own mean, then joined with that of the passes before
+ * (Chan, Golub and LeVeque, "Updating formulae", 1979). Sums of squares would lose a small spread about a large mean. */
+static inline void add_radiance_to_film(const __local PixelSamples* samples, uint colour, float before, float count,
+                                        __global float* pixel) {
+  const __local float* direct_of = samples->sums[FILM_DIRECT + colour];
+  const __local float* diffuse_of = samples->sums[FILM_DIFFUSE + colour];
+  float direct = sum_of(direct_of), diffuse = sum_of(diffuse_of), spread = 0.0f;
+  const float mean = (direct + diffuse) / count;
+  for (int i = 0; i < (int)count; ++i) {
+    const float off = direct_of[i] + diffuse_of[i] - mean;
+    spread += off * off;
+  }
+  if (before > 0.0f) {
+    const float mean_before = (pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour]) / before;
+    const float apart = mean - mean_before;
+    spread += pixel[FILM_SPREAD + colour] + apart * apart * (before * count / (before + count));
+    direct += pixel[FILM_DIRECT + colour];
+    diffuse += pixel[FILM_DIFFUSE + colour];
+  }
+  pixel[FILM_DIRECT + colour] = direct;
+  pixel[FILM_DIFFUSE + colour] = diffuse;
+  pixel[FILM_SPREAD + colour] = spread;
+}
+
+/* Adds `count` samples to the film of a pixel that holds `before`; 0: it holds nothing yet. A work-item a channel: each of
+ * the pixel's 32 calls this, after a barrier behind keep_sample. */
+static inline void add_to_film(const __local PixelSamples* samples, uint lane, uint before, uint count,
+                               __global float* pixel) {
+  if (lane < 3u) {
+    add_radiance_to_film(samples, lane, (float)before, (float)count, pixel);
+  } else if (lane < FILM_DIFFUSE) {
+    const float sum = sum_of(samples->sums[lane]);
+    pixel[lane] = before == 0u ? sum : pixel[lane] + sum;
+  } else if (lane == FILM_DIFFUSE) {
+    uint first = FILM_NO_POINT;
+    for (int i = GRID_RAYS - 1; i >= 0; --i)
+      first = samples->points[i] != FILM_NO_POINT ? samples->points[i] : first;
+    if (before == 0u || as_uint(pixel[FILM_POINT]) == FILM_NO_POINT)
+      pixel[FILM_POINT] = as_float(first);
+  }
+}

@@ -1,0 +1,101 @@
+/* One sample of a pixel by path tracing, the measure of every other way of computing light: unbiased over the same
+ * splats, blending, materials and lights. At every diffuse surface light straight from its sources is gathered by shadow
+ * rays (kernels/lib/direct_light.cl), and the path goes on in a direction drawn by the cosine: rho/pi cos / (cos/pi) =
+ * rho. Emission and environment count where a camera's ray meets them; where a bounced ray does, the shadow rays of the
+ * surface before have counted them. No sample is clamped: what is noisy shows in the variance.
+ *   PATH_CLASSES  defined only where params->path_classes leaves some paths out */
+#include "render/eye_sample.cl"
+
+/* Uses of random numbers at a vertex, after those of kernels/lib/direct_light.cl (1 to 3). */
+#define DIMENSION_BOUNCE 4u
+#define DIMENSION_ROULETTE 5u
+
+/* Bounces that no roulette ends. */
+#define SURE_BOUNCES 3u
+/* A path survives with the probability of its surface's largest albedo, so the strongest colour keeps its weight. Less
+ * than 1, or a path between white walls would never end. */
+#define LONGEST_SURVIVAL 0.995f
+
+/* Whether paths with this many surface points count. */
+static inline bool path_counts(__constant RenderParams* params, uint surfaces) {
+#ifdef PATH_CLASSES
+  return ((params->path_classes >> min(surfaces, LAST_PATH_CLASS)) & 1u) != 0u;
+#else
+  return true;
+#endif
+}
+
+/* The ray that a path goes on with. It starts as shadow rays do (in_light), so both see the same. */
+static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
+  const float4 u = stratified4(id, DIMENSION_BOUNCE);
+  Ray ray;
+  ray.origin = s->position;
+  ray.direction = cosine_direction(s->normal, u.x, u.y);
+  ray.t_min = BEHIND_SURFACE;
+  ray.t_max = INFINITY;
+#ifdef STEP_ABSOLUTE
+  ray.step_delta = step_delta;
+#endif
+  return ray;
+}
+
+/* Reflects the path's weight off the surface that is its `surfaces`-th; false where the path ends. */
+static inline bool survives(const Surface* s, SampleId id, uint surfaces, float3* weight) {
+  *weight *= s->albedo;
+  if (surfaces > SURE_BOUNCES) {
+    const float survival = min(max(max(s->albedo.x, s->albedo.y), s->albedo.z), LONGEST_SURVIVAL);
+    if (!(random4(id, DIMENSION_ROULETTE).x < survival))
+      return false;
+    *weight /= survival;
+  }
+  return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
+}
+
+/* As add_sample, with all light that the eye ray finds. */
+static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
+  uint point = FILM_NO_POINT;
+  float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), weight = (float3)(1.0f);
+  RayStart start = start_in_the_open();
+  for (uint surfaces = 1u;; ++surfaces) {
+    Surface s;
+    sums[FILM_RAYS] += 1.0f;
+    const bool met = blended_surface(POOL_ARGS, ray, start, hit, &s, &sums[FILM_RAYS]);
+    if (surfaces == 1u && path_counts(lights.params, 0u) && !met)
+      direct = load3_constant(lights.params->environment);
+    if (surfaces == 1u && met) {
+      point = s.splat;
+      add_surface(lights.params, ray, t_start, &s, sums);
+    }
+    if (!met || !s.front)
+      break;
+#ifdef HAS_EMITTERS
+    if (surfaces == 1u && path_counts(lights.params, 0u))
+      direct = load3(lights.materials[s.material].emission);
+#endif
+    if (surfaces > lights.params->most_bounces)
+      break;
+#ifdef HAS_LIGHT
+    if (path_counts(lights.params, surfaces)) {
+      const float3 found =
+          weight * (s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]));
+      if (surfaces == 1u)
+        direct += found;
+      else
+        diffuse += found;
+    }
+#endif
+    if (surfaces == lights.params->most_bounces || !survives(&s, id, surfaces, &weight))
+      break;
+    ray = bounced_ray(&s, id, lights.params->step_delta);
+    start.on_surface = true;
+    start.normal = s.normal;
+    start.radius = s.radius;
+    hit = trace_closest_of(POOL_ARGS, ray, start);
+    id.vertex += 1u;
+  }
+  add_direct(direct, sums);
+  sums[FILM_DIFFUSE] += diffuse.x;
+  sums[FILM_DIFFUSE + 1] += diffuse.y;
+  sums[FILM_DIFFUSE + 2] += diffuse.z;
+  return point;
+}
