@@ -1,4 +1,5 @@
 #include "host/app/commands.h"
+#include "host/app/indirect_stages.h"
 #include "host/app/interrupt.h"
 #include "host/app/prepare.h"
 #include "host/app/progress.h"
@@ -59,19 +60,6 @@ PixelWindow window_of(const RenderOptions& options, const RenderSettings& render
 
 std::string output_of(const RenderOptions& options) {
   return options.output.empty() ? std::filesystem::path(options.input).stem().string() + ".exr" : options.output;
-}
-
-/// The stages that later steps of light transport will fill; said so, not left out (method.md §7).
-void skip_indirect_stages(const Scene& scene, const DeviceLighting& lighting, bool by_paths, StageLog& stages) {
-  const bool lit = !lighting.delta.empty() || !lighting.emitters.empty() || lighting.has_environment;
-  const std::string why = by_paths ? "paths are traced" : "this version renders direct light only";
-  const std::string reason = lit ? why : "the scene has no light and no emission";
-  stages.skip("vmap", reason);
-  stages.skip("fmm", reason);
-  stages.skip("photon", "no specular material");
-  if (scene.radiosity.place) spdlog::warn("{}: [radiosity] has no effect: {}", scene.radiosity.place->text(), why);
-  if (scene.caustics.place)
-    spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
 }
 
 /// The paths to trace, or nothing where no path is traced.
@@ -158,6 +146,7 @@ Scene checked_scene(const RenderOptions& options) {
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
   }
   refuse_unsupported(scene);
+  if (options.integrator != "path") require_known_radiosity(scene);
   // Before the work, not after it.
   require_writable_picture(output_of(options));
   for (const std::string& file : {options.stats_file, options.trace_file})
@@ -169,7 +158,6 @@ Scene checked_scene(const RenderOptions& options) {
 /// picture alone.
 bool render_picture(Session& session, const DevicePools& pools, const RenderRequest& request, PictureWriter& writer,
                     bool quiet, RenderTotals& totals, StageLog& stages) {
-  catch_interrupts();
   stages.start("render");
   {
     Progress progress("render", quiet);
@@ -222,12 +210,18 @@ ExitCode run_render(const RenderOptions& options) {
 
   const DeviceLighting lighting = device_lighting(scene, placed.frame, points_of(pools));
   const std::optional<LightPaths> paths = paths_of(options, scene);
-  skip_indirect_stages(scene, lighting, paths.has_value(), stages);
+  catch_interrupts();
+  const IndirectLight indirect = run_indirect_stages(session, on_device, variant, scene, placed.frame, lighting,
+                                                     points_of(pools), paths.has_value(), stages, interrupted);
+  stages.skip("photon", "no specular material");
+  if (scene.caustics.place)
+    spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
+  RenderRequest request{window, lighting, placed.frame, ids, variant, paths};
+  request.irradiance = indirect.irradiance ? &*indirect.irradiance : nullptr;
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
-                       film_channels(paths.has_value()),
+                       film_channels(request.has_indirect()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
-  const bool written = render_picture(session, on_device, {window, lighting, placed.frame, ids, variant, paths}, writer,
-                                      options.quiet, stats.render, stages);
+  const bool written = render_picture(session, on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)
     throw Error(ExitCode::interrupted, "interrupted before the first rows were finished; nothing was written");
   warn_of_view(stats.render, placed.frame, scene);
@@ -237,6 +231,8 @@ ExitCode run_render(const RenderOptions& options) {
     stats.variant = choice;
     stats.scene = &scene;
     stats.session = &session;
+    stats.links = indirect.links;
+    stats.solution = indirect.solution;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }

@@ -58,6 +58,20 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
       {"eye_mrays_per_s", r.eye_seconds > 0.0 ? 1e-6 * static_cast<double>(r.eye_rays) / r.eye_seconds : 0.0},
       {"back_face_share", r.back_face_share()},
       {"interrupted", r.interrupted}};
+  if (stats.solution.applies > 0) {
+    const LinkStatistics& l = stats.links;
+    out["vmap"] = {{"pairs_tested", l.pairs_tested},
+                   {"links", l.far + l.mid + l.near_},
+                   {"far", l.far},
+                   {"mid", l.mid},
+                   {"near", l.near_},
+                   {"rays", l.rays}};
+    out["radiosity"] = {{"method", stats.scene->radiosity.method},
+                        {"order", stats.scene->radiosity.order},
+                        {"iterations", stats.solution.applies},
+                        {"residual", stats.solution.residual},
+                        {"converged", stats.solution.end == SolveEnd::converged}};
+  }
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())
     out["stages"].push_back({{"name", s.name},

@@ -1,9 +1,11 @@
 #pragma once
+#include "fmm/solve/solve.h"
 #include "host/app/stages.h"
 #include "host/cl/session.h"
 #include "host/passes/render.h"
 #include "host/passes/tuned.h"
 #include "octree/pack/pools.h"
+#include "octree/vmap/make_links.h"
 #include <nlohmann/json.hpp>
 
 namespace pointgi {
@@ -15,6 +17,8 @@ struct Stats {
   OctreeSummary octree;
   const Session* session = nullptr;
   RenderTotals render;
+  LinkStatistics links;
+  Solution solution; ///< of radiosity; without applies where there was none
   VariantChoice variant;
   double seconds = 0.0;
 };

@@ -55,10 +55,10 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
   const double scale = request.lighting.radiance.scale;
   for (int k = 0; k < 3; ++k) {
     const double direct = scale * (film[FILM_DIRECT + k] / samples);
-    const double diffuse = request.paths ? scale * (film[FILM_DIFFUSE + k] / samples) : 0.0;
+    const double diffuse = request.has_indirect() ? scale * (film[FILM_DIFFUSE + k] / samples) : 0.0;
     set(c_r + k, direct + diffuse);
     set(c_direct_r + k, direct);
-    if (request.paths) set(c_diffuse_r + k, diffuse);
+    if (request.has_indirect()) set(c_diffuse_r + k, diffuse);
     set(c_variance_r + k, variance_of_mean(scale * scale * double{film[FILM_SPREAD + k]}, samples));
   }
   const float hits = film[FILM_COVERAGE];
@@ -120,8 +120,9 @@ void resolve_tile(const std::vector<float>& film, int column, int columns, const
 RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
-  TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths);
-  const std::size_t channels = film_channels(request.paths.has_value()).size();
+  TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
+                     request.irradiance);
+  const std::size_t channels = film_channels(request.has_indirect()).size();
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;

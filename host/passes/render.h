@@ -37,7 +37,10 @@ struct RenderRequest {
   const Frame& frame;
   View<std::uint32_t> point_ids; ///< id to write for each point of the pool
   TraversalVariant variant;
-  std::optional<LightPaths> paths; ///< by path tracing, of these; else direct light
+  std::optional<LightPaths> paths;               ///< by path tracing, of these; else direct light and `irradiance`
+  const Buffer<cl_float4>* irradiance = nullptr; ///< of each point of the pool, from surfaces; null: none
+
+  bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
 };
 
 /// Renders the window's rows from the top and hands finished bands to `take`, after each launch `progress` (share done,

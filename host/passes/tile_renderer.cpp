@@ -4,11 +4,14 @@
 namespace pointgi {
 
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
-                           const TraversalVariant& variant, const std::optional<LightPaths>& paths)
+                           const TraversalVariant& variant, const std::optional<LightPaths>& paths,
+                           const Buffer<cl_float4>* irradiance)
     : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping),
-      eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group) {
+      eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
+      irradiance_(paths ? nullptr : irradiance) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
-  const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment};
+  const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment,
+                               irradiance_ != nullptr};
   if (paths) {
     params_.path_classes = paths->classes;
     params_.most_bounces = paths->most_bounces;
@@ -40,9 +43,12 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
   seconds.eye = session_.launch(eye_rays_, grouping_ == RayGrouping::packet ? squares : pixels(eye_group_),
                                 pools_.nodes, pools_.leaves, pools_.points, device_params_, hits_, number(x), number(y),
                                 number(columns), number(rows), number(first_sample));
-  seconds.shade = session_.launch(shade_, pixels(shade_group_), pools_.nodes, pools_.leaves, pools_.points,
-                                  device_params_, materials_, delta_, emitters_, hits_, film_, number(x), number(y),
-                                  number(columns), number(rows), number(first_sample));
+  const auto shade = [&](const auto&... pools) {
+    return session_.launch(shade_, pixels(shade_group_), pools..., device_params_, materials_, delta_, emitters_, hits_,
+                           film_, number(x), number(y), number(columns), number(rows), number(first_sample));
+  };
+  seconds.shade = irradiance_ != nullptr ? shade(pools_.nodes, pools_.leaves, pools_.points, *irradiance_)
+                                         : shade(pools_.nodes, pools_.leaves, pools_.points);
   return seconds;
 }
 

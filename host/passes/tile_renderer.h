@@ -16,9 +16,11 @@ struct TileSeconds {
 /// The picture's kernels in a variant, with all of their arguments but the tile's place. Borrows session and pools.
 class TileRenderer {
 public:
-  /// `side`: of the root cube, world units; `paths`: by path tracing. Builds the programs where they are not built yet.
+  /// `side`: of the root cube, world units; `paths`: by path tracing; else
+  /// `irradiance`, of each point, is reflected too where it is there. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
-               const TraversalVariant& variant, const std::optional<LightPaths>& paths = {});
+               const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
+               const Buffer<cl_float4>* irradiance = nullptr);
 
   pg_uint samples() const { return params_.samples; }
 
@@ -42,6 +44,7 @@ private:
   Buffer<Material> materials_;
   Buffer<DeltaLight> delta_;
   Buffer<Emitter> emitters_;
+  const Buffer<cl_float4>* irradiance_;
   Buffer<EyeHits> hits_;
   Buffer<float> film_;
 };

@@ -22,7 +22,8 @@ std::string group_options(WorkGroup group) {
 
 std::string feature_options(const SceneFeatures& features) {
   return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
-         (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "");
+         (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
+         (features.radiosity ? " -D HAS_RADIOSITY" : "");
 }
 
 } // namespace

@@ -30,6 +30,7 @@ struct SceneFeatures {
   bool delta_lights = false;
   bool emitters = false;
   bool environment = false;
+  bool radiosity = false; ///< of the picture: points have irradiance from surfaces
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.

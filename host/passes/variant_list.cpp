@@ -147,7 +147,7 @@ std::vector<ProgramUse> all_programs() {
     add(trace_program(v), cpu, gpu);
     add(eye_rays_program(v), cpu, gpu);
     add(shade_program(v, {}), cpu, gpu);
-    add(shade_program(v, {true, true, true}), cpu, gpu);
+    add(shade_program(v, {true, true, true, true}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(path_program(v, {true, true, true}, true), cpu, gpu);

@@ -1,5 +1,6 @@
 /* Overlapping discs near the first hit become one smooth surface: colour, normal and depth are means with a weight that
  * falls to zero at a disc's rim, or seams would show (method.md section 6). */
+#include "lib/pools.cl"
 #include "lib/ray.cl"
 #include "lib/ray_splat.cl"
 
@@ -12,6 +13,9 @@
 
 typedef struct Surface {
   float3 position, normal, albedo; /* normal on the splats' front side, unit */
+#ifdef HAS_RADIOSITY
+  float3 irradiance; /* from other surfaces */
+#endif
   float t;
   float radius;  /* of the disc hit first */
   uint splat;    /* the disc hit first */
@@ -21,14 +25,17 @@ typedef struct Surface {
 
 typedef struct Blend {
   float3 normal_of_first;
-  float3 normal, albedo; /* weighted sums, as are weight and t */
+  float3 normal, albedo; /* weighted sums, as are irradiance, weight and t */
+#ifdef HAS_RADIOSITY
+  float3 irradiance;
+#endif
   float weight, t;
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
   float radius;
   uint splat, material;
 } Blend;
 
-static inline void blend_add(Blend* b, float t, float q, float3 normal, float3 albedo) {
+static inline void blend_add(POOL_PARAMS, Blend* b, uint splat, float t, float q, float3 normal, float3 albedo) {
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
   /* A tiny floor keeps a lone disc visible out to its very rim. */
@@ -38,15 +45,21 @@ static inline void blend_add(Blend* b, float t, float q, float3 normal, float3 a
   b->weight += w;
   b->normal += w * normal;
   b->albedo += w * albedo;
+#ifdef HAS_RADIOSITY
+  b->irradiance += w * irradiance_pool[splat].xyz;
+#endif
   b->t += w * t;
 }
 
 /* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
-static inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
+static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
   float q;
   const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
   b->normal_of_first = normal.xyz;
   b->normal = b->albedo = (float3)(0.0f);
+#ifdef HAS_RADIOSITY
+  b->irradiance = (float3)(0.0f);
+#endif
   b->weight = b->t = 0.0f;
   b->t_first = t;
   /* At least a few float steps, so that the window is never empty. */
@@ -54,7 +67,7 @@ static inline void blend_begin(Blend* b, Ray ray, uint splat, float4 centre, flo
   b->radius = centre.w;
   b->splat = splat;
   b->material = (uint)normal.w;
-  blend_add(b, t, q, normal.xyz, albedo);
+  blend_add(POOL_ARGS, b, splat, t, q, normal.xyz, albedo);
 }
 
 static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
@@ -63,6 +76,9 @@ static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
   s->position = fma((float3)(s->t), ray.direction, ray.origin);
   s->normal = normalize3(b->normal);
   s->albedo = b->albedo * scale;
+#ifdef HAS_RADIOSITY
+  s->irradiance = b->irradiance * scale;
+#endif
   s->radius = b->radius;
   s->splat = b->splat;
   s->material = b->material;

@@ -24,14 +24,14 @@
 #define FORM_WIDE 1
 
 #if TRAVERSAL_FORM == FORM_WIDE
-#define POOL_ARGS node_pool, block_pool, point_pool
-#define POOL_PARAMS \
+#define OCTREE_ARGS node_pool, block_pool, point_pool
+#define OCTREE_PARAMS \
   const __global WideNode *restrict node_pool, const __global float *restrict block_pool, const __global float4 *restrict point_pool
 #define pool_point_texel(i) (point_pool[i])
 #else
-#define POOL_ARGS node_pool, begin_end_pool, point_pool
+#define OCTREE_ARGS node_pool, begin_end_pool, point_pool
 #if POOL_STORAGE == POOL_BUFFER
-#define POOL_PARAMS \
+#define OCTREE_PARAMS \
   const __global uint4 *restrict node_pool, const __global uint *restrict begin_end_pool, const __global float4 *restrict point_pool
 #define pool_node(i) (node_pool[i])
 #define pool_begin_end(i) (begin_end_pool[i])
@@ -46,11 +46,11 @@ static inline uint pool_component(uint4 texel, uint i) {
 #define pool_node(i) pool_texel_ui(node_pool, i)
 #define pool_point_texel(i) pool_texel_f(point_pool, i)
 #if POOL_STORAGE == POOL_IMAGE1D
-#define POOL_PARAMS __read_only image1d_buffer_t node_pool, __read_only image1d_buffer_t begin_end_pool, __read_only image1d_buffer_t point_pool
+#define OCTREE_PARAMS __read_only image1d_buffer_t node_pool, __read_only image1d_buffer_t begin_end_pool, __read_only image1d_buffer_t point_pool
 #define pool_texel_ui(pool, i) read_imageui(pool, (int)(i))
 #define pool_texel_f(pool, i) read_imagef(pool, (int)(i))
 #elif POOL_STORAGE == POOL_IMAGE2D
-#define POOL_PARAMS __read_only image2d_t node_pool, __read_only image2d_t begin_end_pool, __read_only image2d_t point_pool
+#define OCTREE_PARAMS __read_only image2d_t node_pool, __read_only image2d_t begin_end_pool, __read_only image2d_t point_pool
 #define pool_at(i) ((int2)((int)((i) & ((1u << POOL_WIDTH_LOG2) - 1u)), (int)((i) >> POOL_WIDTH_LOG2)))
 #define pool_texel_ui(pool, i) read_imageui(pool, pool_sampler, pool_at(i))
 #define pool_texel_f(pool, i) read_imagef(pool, pool_sampler, pool_at(i))
@@ -58,4 +58,13 @@ static inline uint pool_component(uint4 texel, uint i) {
 #error "POOL_STORAGE must be POOL_BUFFER, POOL_IMAGE1D or POOL_IMAGE2D"
 #endif
 #endif
+#endif
+
+#ifdef HAS_RADIOSITY
+/* Beside the points, what other surfaces send them: irradiance_pool[i].xyz [W/m2, scaled as RenderParams]. */
+#define POOL_ARGS OCTREE_ARGS, irradiance_pool
+#define POOL_PARAMS OCTREE_PARAMS, const __global float4 *restrict irradiance_pool
+#else
+#define POOL_ARGS OCTREE_ARGS
+#define POOL_PARAMS OCTREE_PARAMS
 #endif

@@ -71,7 +71,7 @@ static inline bool blended_surface(POOL_PARAMS, Ray ray, RayStart start, Hit hit
   if (first.splat == NO_SPLAT)
     return false;
   Blend blend;
-  blend_begin(&blend, ray, first.splat, pool_point_texel(POINT_TEXELS * first.splat),
+  blend_begin(POOL_ARGS, &blend, ray, first.splat, pool_point_texel(POINT_TEXELS * first.splat),
               pool_point_texel(POINT_TEXELS * first.splat + 1u), pool_point_texel(POINT_TEXELS * first.splat + 2u).xyz);
   blend_others(POOL_ARGS, ray, &blend);
   blend_end(&blend, ray, surface);

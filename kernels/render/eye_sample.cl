@@ -1,5 +1,5 @@
 /* One sample of a pixel: from the image to radiance.
- * L = emission + rho/pi * H_direct on front sides; a back face reads 0; a miss reads the environment. */
+ * L = emission + rho/pi (H_direct + H_indirect) on front sides; a back face reads 0; a miss reads the environment. */
 #include "lib/direct_light.cl"
 #include "render/camera.cl"
 
@@ -34,12 +34,21 @@ static inline void add_direct(float3 radiance, float* sums) {
   sums[FILM_DIRECT + 2] += radiance.z;
 }
 
+static inline void add_diffuse(float3 radiance, float* sums) {
+  sums[FILM_DIFFUSE] += radiance.x;
+  sums[FILM_DIFFUSE + 1] += radiance.y;
+  sums[FILM_DIFFUSE + 2] += radiance.z;
+}
+
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   Surface s;
   uint point = FILM_NO_POINT;
   float3 radiance = (float3)(0.0f);
+#ifdef HAS_RADIOSITY
+  float3 diffuse = (float3)(0.0f);
+#endif
   sums[FILM_RAYS] += 1.0f;
   if (blended_surface(POOL_ARGS, ray, start_in_the_open(), hit, &s, &sums[FILM_RAYS])) {
     point = s.splat;
@@ -51,10 +60,16 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #ifdef HAS_EMITTERS
       radiance += load3(lights.materials[s.material].emission);
 #endif
+#ifdef HAS_RADIOSITY
+      diffuse = s.albedo * INVERSE_PI * s.irradiance;
+#endif
     }
   } else {
     radiance = load3_constant(lights.params->environment);
   }
   add_direct(radiance, sums);
+#ifdef HAS_RADIOSITY
+  add_diffuse(diffuse, sums);
+#endif
   return point;
 }

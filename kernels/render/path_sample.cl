@@ -94,8 +94,6 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
     id.vertex += 1u;
   }
   add_direct(direct, sums);
-  sums[FILM_DIFFUSE] += diffuse.x;
-  sums[FILM_DIFFUSE + 1] += diffuse.y;
-  sums[FILM_DIFFUSE + 2] += diffuse.z;
+  add_diffuse(diffuse, sums);
   return point;
 }

@@ -1,0 +1,48 @@
+#include "host/passes/radiosity.h"
+#include "fmm/operators/fmm_operator.h"
+#include "host/passes/visibility.h"
+#include <stdexcept>
+
+namespace pointgi {
+
+RadiosityMap map_visibility(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                            View<Splat> points, const RadiositySettings& settings, unsigned seed, double side) {
+  RadiosityMap map;
+  map.tree = build_clusters(points, ClusterOptions{});
+  DeviceVisibility oracle(session, pools, variant, map.tree.points, static_cast<float>(variant.step_delta / side));
+  LinkOptions options;
+  options.samples = static_cast<unsigned>(settings.vmap_samples);
+  options.seed = seed;
+  map.vmap = make_links(map.tree, oracle, options);
+  return map;
+}
+
+RadiosityField solve_radiosity_field(const RadiosityMap& map, View<float> direct, const RadiositySettings& settings) {
+  const std::size_t points = map.tree.points.size();
+  if (direct.size != 3 * points) throw std::invalid_argument("radiosity: three direct irradiances a point");
+  std::vector<double> emission(3 * points), albedo(3 * points), area(points);
+  for (std::size_t k = 0; k < points; ++k) {
+    const Splat& splat = map.tree.points[k];
+    area[k] = splat.area;
+    for (std::size_t c = 0; c < 3; ++c) {
+      albedo[3 * k + c] = splat.colour[c];
+      emission[3 * k + c] = splat.colour[c] * direct[3 * map.tree.order[k] + c];
+    }
+  }
+  FmmOptions options;
+  options.grid.order = static_cast<unsigned>(settings.order);
+  FmmOperator exchange(map.tree, map.vmap.links, options);
+  SolveOptions solve;
+  solve.tolerance = settings.tolerance;
+  RadiosityField field;
+  field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
+  std::vector<double> gathered;
+  exchange.apply(field.solution.radiosity, Judge::now, gathered);
+  field.irradiance.resize(3 * points);
+  for (std::size_t k = 0; k < points; ++k)
+    for (std::size_t c = 0; c < 3; ++c)
+      field.irradiance[3 * map.tree.order[k] + c] = static_cast<float>(gathered[3 * k + c]);
+  return field;
+}
+
+} // namespace pointgi
