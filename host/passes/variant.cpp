@@ -65,4 +65,8 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
   return program(variant, "render/shade.cl", options);
 }
 
+Program fmm_program(const char* file) {
+  return {file, "-D FMM_DEVICE"};
+}
+
 } // namespace pointgi

@@ -50,6 +50,9 @@ Program eye_rays_program(const TraversalVariant& variant);
 /// The picture from these hits, shade_pixels: a pixel a half or whole work-group.
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features);
 
+/// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
+Program fmm_program(const char* file);
+
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
 
