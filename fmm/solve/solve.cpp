@@ -129,7 +129,8 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
       solution.rate = 0.0;
     }
   }
-  // In rounds: the rate is judged by sweeps that follow each other, and may rise as the fast parts of the light die out.
+  // In rounds: the rate is judged by sweeps that follow each other, and may rise as the fast parts of the light die
+  // out.
   while (!keeps() && solution.applies < options.most_applies && std::isfinite(solution.residual)) {
     if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
     if (sweeps_left(solution, options.tolerance) > options.most_applies) break;

@@ -169,9 +169,8 @@ void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
         launch(LaunchShape::line(count, group_), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     device_seconds_ += seconds;
     if (seconds > 0.01 * launch_seconds)
-      jobs.pairs_per_second =
-          std::clamp((jobs.cost[first + count] - jobs.cost[first]) / seconds, 0.25 * jobs.pairs_per_second,
-                     4.0 * jobs.pairs_per_second);
+      jobs.pairs_per_second = std::clamp((jobs.cost[first + count] - jobs.cost[first]) / seconds,
+                                         0.25 * jobs.pairs_per_second, 4.0 * jobs.pairs_per_second);
     first += count;
   }
 }
@@ -207,7 +206,7 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
   const auto fluxes = session_.upload(cluster_planes);
 
   in_pieces(leaves_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
-    return session_.launch(p2m_, shape, leaves_.items, first, count, cluster_buffer_, grid_buffer_, node_buffer_, nodes_,
+    return session_.launch(p2m_, shape, leaves_.items, first, count, cluster_buffer_, grid_buffer_, nodes_,
                            point_buffer_, stride_, flux, moments_);
   });
   for (std::size_t level = up_.size(); level-- > 0;)
@@ -221,8 +220,8 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
   });
   for (Jobs& level : down_)
     in_pieces(level, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
-      return session_.launch(l2l_, shape, level.items, first, count, cluster_buffer_, grid_buffer_, node_buffer_, nodes_,
-                             local_);
+      return session_.launch(l2l_, shape, level.items, first, count, cluster_buffer_, grid_buffer_, node_buffer_,
+                             nodes_, local_);
     });
   in_pieces(blocks_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
     return session_.launch(l2p_, shape, blocks_.items, first, count, grid_buffer_, nodes_, point_buffer_, stride_,

@@ -5,8 +5,8 @@
 
 namespace pointgi {
 
-/// As FmmOperator, in float on the device. A row of a list is summed in its own order by one work-item, so an apply gives
-/// the same bits whatever the number of threads and the size of launches.
+/// As FmmOperator, in float on the device. A row of a list is summed in its own order by one work-item, so an apply
+/// gives the same bits whatever the number of threads and the size of launches.
 class DeviceFmm : public RadiosityOperator {
 public:
   /// Uploads points, grids and lists, and builds the kernels. `session` and `tree` must outlive it. Throws
@@ -24,7 +24,7 @@ private:
   /// Work-items that run one after another in launches of about the same time.
   struct Jobs {
     Buffer<cl_uint4> items;
-    std::vector<double> cost; ///< of the jobs before this one, in pairs; one more than there are jobs
+    std::vector<double> cost;      ///< of the jobs before this one, in pairs; one more than there are jobs
     double pairs_per_second = 2e7; ///< learnt from launches
   };
   struct Rows {

@@ -66,7 +66,7 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
 }
 
 Program fmm_program(const char* file) {
-  return {file, "-D FMM_DEVICE"};
+  return {file, ""};
 }
 
 } // namespace pointgi

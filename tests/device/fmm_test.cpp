@@ -102,7 +102,8 @@ TEST_CASE("fmm time", "[.]") {
         node_pairs += 1.0 * device.grids().of[k].count * device.grids().of[device.lists().far.source[e]].count;
     for (const auto& [name, time] : session().kernel_times()) {
       const auto it = before.find(name);
-      WARN(order << " " << name << " " << 0.5 * (time.seconds - (it == before.end() ? 0.0 : it->second.seconds)) << " s, launches " << time.launches << " node pairs " << node_pairs);
+      WARN(order << " " << name << " " << 0.5 * (time.seconds - (it == before.end() ? 0.0 : it->second.seconds))
+                 << " s, launches " << time.launches << " node pairs " << node_pairs);
     }
   }
 }

@@ -18,8 +18,7 @@ struct Room {
   std::vector<double> area;
 
   explicit Room(const std::vector<Splat>& splats)
-      : tree(build_clusters(splats, {})), links(links_without_visibility(tree)),
-        exchange(tree, links, {}) {
+      : tree(build_clusters(splats, {})), links(links_without_visibility(tree)), exchange(tree, links, {}) {
     for (const Splat& s : tree.points)
       area.push_back(s.area);
   }
