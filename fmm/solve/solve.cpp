@@ -120,7 +120,8 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
     return finish();
   }
   if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
-  const auto keeps = [&] { return !(solution.rate < options.largest_rate); };
+  // Light that is kept leaves the residual where it began; far below that a rate of 1 is rounding.
+  const auto keeps = [&] { return !(solution.rate < options.largest_rate) && !(solution.residual < 0.01); };
   if (!keeps() && options.krylov && sweeps_left(solution, options.tolerance) > options.patient_sweeps) {
     const Eigen::VectorXd kept = b;
     if (accelerate(problem, emitted, options, b, solution)) return finish();

@@ -103,11 +103,11 @@ void DeviceFmm::make_node_jobs() {
   far_ = make_jobs(far.items, far.costs);
 }
 
-/// Jobs of blocks of a leaf's points; their cost is what they read of the rows of the leaf and all above it.
+/// Jobs of blocks of a leaf's points: what they interpolate, and what they read of the rows of the leaf and all above.
 void DeviceFmm::make_point_jobs() {
   std::vector<double> reads(tree_.nodes.size());
   std::vector<cl_uint4> items;
-  std::vector<double> costs;
+  std::vector<double> costs, nodes;
   for (cl_uint k = 0; k < tree_.nodes.size(); ++k) {
     const Cluster& cluster = tree_.nodes[k];
     reads[k] = k == 0 ? 1.0 : reads[cluster.parent];
@@ -118,9 +118,11 @@ void DeviceFmm::make_point_jobs() {
     for (cl_uint i = 0; i < cluster.count; i += FMM_LANES) {
       items.push_back({{k, cluster.first_point + i, std::min<cl_uint>(FMM_LANES, cluster.count - i), 0}});
       costs.push_back(reads[k]);
+      nodes.push_back(grids_.of[k].count);
     }
   }
-  blocks_ = make_jobs(items, costs);
+  read_ = make_jobs(items, costs);
+  interpolate_ = make_jobs(items, nodes);
 }
 
 DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options)
@@ -223,12 +225,12 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
       return session_.launch(l2l_, shape, level.items, first, count, cluster_buffer_, grid_buffer_, node_buffer_,
                              nodes_, local_);
     });
-  in_pieces(blocks_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
-    return session_.launch(l2p_, shape, blocks_.items, first, count, grid_buffer_, nodes_, point_buffer_, stride_,
+  in_pieces(interpolate_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+    return session_.launch(l2p_, shape, interpolate_.items, first, count, grid_buffer_, nodes_, point_buffer_, stride_,
                            local_, irradiance_);
   });
-  in_pieces(blocks_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
-    return session_.launch(receive_points_, shape, blocks_.items, first, count, cluster_buffer_, point_buffer_, stride_,
+  in_pieces(read_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+    return session_.launch(receive_points_, shape, read_.items, first, count, cluster_buffer_, point_buffer_, stride_,
                            flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, near_rows_.begin,
                            near_rows_.source, near_rows_.share, irradiance_);
   });

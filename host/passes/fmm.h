@@ -52,7 +52,8 @@ private:
   double device_seconds_ = 0.0;
 
   std::vector<Jobs> up_, down_; ///< a level each; leaves apart from other clusters in up_
-  Jobs leaves_, far_, blocks_;
+  Jobs leaves_, far_;           ///< blocks of nodes, as those above
+  Jobs interpolate_, read_;     ///< blocks of points
   Rows far_rows_, mid_rows_, near_rows_;
   Buffer<FmmCluster> cluster_buffer_;
   Buffer<FmmGrid> grid_buffer_;
