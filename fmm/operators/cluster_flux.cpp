@@ -54,8 +54,8 @@ void update_cluster_fluxes(const ClusterTree& tree, View<ExchangePoint> points, 
     f.power = sums[k].power;
     if (judge == Judge::before) continue;
     const float* middle = tree.nodes[k].centre;
-    f.centre = f.power > 0.0 ? Eigen::Vector3d(sums[k].moment / f.power)
-                             : Eigen::Vector3d(middle[0], middle[1], middle[2]);
+    f.centre =
+        f.power > 0.0 ? Eigen::Vector3d(sums[k].moment / f.power) : Eigen::Vector3d(middle[0], middle[1], middle[2]);
     for (int c = 0; c < 3; ++c)
       f.judge[c] = f.flux[c].squaredNorm() > 0.0 ? f.flux[c] : sums[k].normal;
   }

@@ -36,8 +36,8 @@ void for_weights(const Grid& grid, const double x[3], const Use& use) {
 
 FmmOperator::FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options)
     : tree_(tree), grids_(make_grids(tree, options.grid)),
-      lists_(make_interaction_lists(tree, links, grids_, options.lists)), points_(tree.points.begin(), tree.points.end()),
-      levels_(levels_of(tree)) {
+      lists_(make_interaction_lists(tree, links, grids_, options.lists)),
+      points_(tree.points.begin(), tree.points.end()), levels_(levels_of(tree)) {
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     if (tree.nodes[k].child_count == 0) leaves_.push_back(k);
   for (int value = 0; value < FMM_VALUES; ++value) {

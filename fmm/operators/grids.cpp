@@ -12,8 +12,8 @@ namespace {
 /// A side shorter than this share of the longest is widened to it: on flat clusters the place across is then well
 /// defined in float, too (2^-10 of a side leaves 13 bits of it).
 constexpr double least_share = 1.0 / 1024.0;
-/// And this much of the root cube, for clusters of one point: a few steps of a float in [0, 1).
-constexpr double least_side = 1e-6;
+/// And this much of the root cube, for clusters of one point: a hundred steps of a float in [0, 1).
+constexpr double least_side = 1e-5;
 
 /// Nodes that a side of `share` times the longest needs. Interpolation's error falls like ratio^n, ratio = half a side
 /// over the distance; of pairs just separated (radii below 0.55 of the distance together) the longest side's ratio is

@@ -15,8 +15,8 @@ struct Grid {
 };
 
 struct Grids {
-  std::vector<Grid> of;                   ///< one a cluster
-  std::vector<double> position[3];        ///< of each node, axis by axis; padding repeats a grid's last node
+  std::vector<Grid> of;            ///< one a cluster
+  std::vector<double> position[3]; ///< of each node, axis by axis; padding repeats a grid's last node
   std::size_t nodes() const { return position[0].size(); }
 };
 

@@ -21,8 +21,8 @@ public:
   RadiosityOperator& operator=(const RadiosityOperator&) = delete;
 
   virtual std::size_t points() const = 0;
-  /// irradiance [points x 3, W/m^2] of radiosity [points x 3, W/m^2]; a row a point in tree order, RGB. Same bits for any
-  /// number of threads. `irradiance` is resized.
+  /// irradiance [points x 3, W/m^2] of radiosity [points x 3, W/m^2]; a row a point in tree order, RGB. Same bits for
+  /// any number of threads. `irradiance` is resized.
   virtual void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) = 0;
 };
 

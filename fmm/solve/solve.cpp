@@ -120,7 +120,8 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
     return finish();
   }
   if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
-  const auto keeps = [&] { return !(solution.rate < options.largest_rate); };
+  // Light that is kept leaves the residual where it began; far below that a rate of 1 is rounding.
+  const auto keeps = [&] { return !(solution.rate < options.largest_rate) && !(solution.residual < 0.01); };
   if (!keeps() && options.krylov && sweeps_left(solution, options.tolerance) > options.patient_sweeps) {
     const Eigen::VectorXd kept = b;
     if (accelerate(problem, emitted, options, b, solution)) return finish();
@@ -129,7 +130,8 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
       solution.rate = 0.0;
     }
   }
-  // In rounds: the rate is judged by sweeps that follow each other, and may rise as the fast parts of the light die out.
+  // In rounds: the rate is judged by sweeps that follow each other, and may rise as the fast parts of the light die
+  // out.
   while (!keeps() && solution.applies < options.most_applies && std::isfinite(solution.residual)) {
     if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
     if (sweeps_left(solution, options.tolerance) > options.most_applies) break;

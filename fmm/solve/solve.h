@@ -40,8 +40,8 @@ struct Solution {
 
 /// emission E [points x 3, W/m^2], albedo rho [points x 3, 0..1], area [points, any unit]; tree order, RGB. Jacobi's
 /// method first; where its residual falls slowly, Eigen's BiCGSTAB over the operator with mid links judged as before,
-/// and a sweep of Jacobi's after each, which judges them anew and gives the residual. Ends in bounded time, whatever the
-/// scene. Deterministic. Throws std::invalid_argument on sizes that differ and on options out of range.
+/// and a sweep of Jacobi's after each, which judges them anew and gives the residual. Ends in bounded time, whatever
+/// the scene. Deterministic. Throws std::invalid_argument on sizes that differ and on options out of range.
 Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
                          const SolveOptions& options);
 

@@ -80,4 +80,8 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
                  group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));
 }
 
+Program fmm_program(const char* file) {
+  return {file, ""};
+}
+
 } // namespace pointgi

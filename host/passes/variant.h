@@ -60,6 +60,9 @@ Program segments_program(const TraversalVariant& variant);
 /// are measured by. `some_paths`: params.path_classes leaves some out.
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);
 
+/// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
+Program fmm_program(const char* file);
+
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
 

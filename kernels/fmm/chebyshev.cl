@@ -21,6 +21,17 @@ static inline fmm_lanes chebyshev_weight(uint n, fmm_lanes t, float u) {
   return (1.0f + 2.0f * sum) / (float)n;
 }
 
+/* Places of a block of a grid's nodes along x, y and z, [-1, 1]. Not from their positions: of a small or flat cluster's
+ * box floats have too few steps, and the weights would not sum to 1. */
+static inline void nodes_of_block(const __global FmmGrid* grid, uint first_node, fmm_lanes* x, fmm_lanes* y,
+                                  fmm_lanes* z) {
+  const int nx = (int)FMM_AXIS(grid->axis, 0), ny = (int)FMM_AXIS(grid->axis, 1), nz = (int)FMM_AXIS(grid->axis, 2);
+  const fmm_mask k = min(FMM_LANE_NUMBERS + (int)(first_node - grid->first), nx * ny * nz - 1);
+  *x = cospi(convert_float8(2 * (k % nx) + 1) / (2.0f * (float)nx));
+  *y = cospi(convert_float8(2 * (k / nx % ny) + 1) / (2.0f * (float)ny));
+  *z = cospi(convert_float8(2 * (k / (nx * ny)) + 1) / (2.0f * (float)nz));
+}
+
 /* A place in a grid's own units, [-1, 1] along each axis. */
 static inline fmm_lanes in_grid(const __global FmmGrid* grid, int axis, fmm_lanes x) {
   return (x - grid->centre[axis]) / grid->half_side[axis];

@@ -18,9 +18,8 @@ static inline fmm_lanes spread_weight(uint3 n, fmm_lanes ux, fmm_lanes uy, fmm_l
 
 /* P2M of leaves: moments of block of nodes = sum over the leaf's points of S(node, x_j) B_j A_j n_j. */
 __kernel void p2m(const __global uint4* jobs, uint first_job, uint count, const __global FmmCluster* clusters,
-                  const __global FmmGrid* grids, const __global float* node_positions, uint nodes,
-                  const __global float* points, uint point_count, const __global float* flux,
-                  __global float* moments) {
+                  const __global FmmGrid* grids, uint nodes, const __global float* points, uint point_count,
+                  const __global float* flux, __global float* moments) {
   const uint id = get_global_id(0);
   if (id >= count)
     return;
@@ -28,9 +27,8 @@ __kernel void p2m(const __global uint4* jobs, uint first_job, uint count, const 
   const __global FmmCluster* cluster = clusters + job.x;
   const __global FmmGrid* grid = grids + job.x;
   const uint3 n = grid_axes(grid);
-  const fmm_lanes ux = in_grid(grid, 0, load_fmm(node_positions + job.y));
-  const fmm_lanes uy = in_grid(grid, 1, load_fmm(node_positions + nodes + job.y));
-  const fmm_lanes uz = in_grid(grid, 2, load_fmm(node_positions + 2u * nodes + job.y));
+  fmm_lanes ux, uy, uz;
+  nodes_of_block(grid, job.y, &ux, &uy, &uz);
   fmm_lanes sum[FMM_VALUES];
   for (int value = 0; value < FMM_VALUES; ++value)
     sum[value] = 0.0f;
@@ -63,9 +61,8 @@ __kernel void m2m(const __global uint4* jobs, uint first_job, uint count, const 
   const __global FmmCluster* cluster = clusters + job.x;
   const __global FmmGrid* grid = grids + job.x;
   const uint3 n = grid_axes(grid);
-  const fmm_lanes ux = in_grid(grid, 0, load_fmm(node_positions + job.y));
-  const fmm_lanes uy = in_grid(grid, 1, load_fmm(node_positions + nodes + job.y));
-  const fmm_lanes uz = in_grid(grid, 2, load_fmm(node_positions + 2u * nodes + job.y));
+  fmm_lanes ux, uy, uz;
+  nodes_of_block(grid, job.y, &ux, &uy, &uz);
   fmm_lanes sum[FMM_VALUES];
   for (int value = 0; value < FMM_VALUES; ++value)
     sum[value] = 0.0f;

@@ -18,10 +18,10 @@
 
 /* Grid of a cluster's expansions: Chebyshev nodes in a box. */
 typedef struct FmmGrid {
-  float centre[3];   /* bytes 0-11: root cube */
+  float centre[3];    /* bytes 0-11: root cube */
   float half_side[3]; /* bytes 12-23: > 0 */
-  pg_uint axis;      /* bytes 24-27: nodes along x | y << 8 | z << 16, each 1..FMM_MAX_ORDER; node ix + nx (iy + ny iz) */
-  pg_uint first;     /* bytes 28-31: its first node in the arrays of nodes, a multiple of FMM_LANES */
+  pg_uint axis;  /* bytes 24-27: nodes along x | y << 8 | z << 16, each 1..FMM_MAX_ORDER; node ix + nx (iy + ny iz) */
+  pg_uint first; /* bytes 28-31: its first node in the arrays of nodes, a multiple of FMM_LANES */
 } FmmGrid;
 #define FMM_AXIS(grid_axis, a) (((grid_axis) >> (8 * (a))) & 255u)
 
@@ -37,9 +37,9 @@ typedef struct FmmCluster {
 /* What a cluster is as one flux vector a colour (MID). Which side it shines to is judged by the flux when the linear
  * operator was frozen; an iteration that is not frozen has it equal to `flux`. */
 typedef struct FmmFlux {
-  float centre[3];           /* bytes 0-11: centroid weighted by flux */
-  float flux[FMM_VALUES];    /* bytes 12-47: sum of B A n, per colour */
-  float judge[FMM_VALUES];   /* bytes 48-83 */
+  float centre[3];         /* bytes 0-11: centroid weighted by flux */
+  float flux[FMM_VALUES];  /* bytes 12-47: sum of B A n, per colour */
+  float judge[FMM_VALUES]; /* bytes 48-83 */
 } FmmFlux;
 
 #endif

@@ -52,11 +52,17 @@ void check_orders(const std::vector<double>& errors) {
 
 } // namespace
 
-TEST_CASE("fmm against the direct sum: inside of a sphere") { check_orders(errors_of_orders(inside_sphere(20000), 5)); }
+TEST_CASE("fmm against the direct sum: inside of a sphere") {
+  check_orders(errors_of_orders(inside_sphere(20000), 5));
+}
 
-TEST_CASE("fmm against the direct sum: inside of a cube") { check_orders(errors_of_orders(inside_cube(58), 5)); }
+TEST_CASE("fmm against the direct sum: inside of a cube") {
+  check_orders(errors_of_orders(inside_cube(58), 5));
+}
 
-TEST_CASE("fmm against the direct sum: two facing sheets") { check_orders(errors_of_orders(facing_sheets(100), 5)); }
+TEST_CASE("fmm against the direct sum: two facing sheets") {
+  check_orders(errors_of_orders(facing_sheets(100), 5));
+}
 
 TEST_CASE("fmm against the direct sum: a scan turned inside out") {
   const auto path = scan_path("bunny.ply");
@@ -71,8 +77,8 @@ TEST_CASE("fmm against the direct sum: a scan turned inside out") {
   std::vector<Splat> splats;
   for (std::size_t i = 0; i < cloud.size(); i += 5) { // 7,000 of them, each for five: all of them take a minute
     const Eigen::Vector3f x = frame.to_cube(cloud.position[i]), n = -cloud.normal[i];
-    splats.push_back(area_splat(x.x(), x.y(), x.z(), n.x(), n.y(), n.z(),
-                                5.0 * cloud.area[i] / (frame.side * frame.side)));
+    splats.push_back(
+        area_splat(x.x(), x.y(), x.z(), n.x(), n.y(), n.z(), 5.0 * cloud.area[i] / (frame.side * frame.side)));
   }
   check_orders(errors_of_orders(splats, 5));
 }

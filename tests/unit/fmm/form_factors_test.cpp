@@ -32,8 +32,8 @@ void add_disc(std::vector<Splat>& splats, int count, double radius, double heigh
   const double golden = pi * (3.0 - std::sqrt(5.0));
   for (int i = 0; i < count; ++i) {
     const double r = radius * std::sqrt((i + 0.5) / count), a = golden * i;
-    splats.push_back(area_splat(0.5 + r * std::cos(a), 0.5 + r * std::sin(a), height, 0, 0, normal,
-                                pi * radius * radius / count));
+    splats.push_back(
+        area_splat(0.5 + r * std::cos(a), 0.5 + r * std::sin(a), height, 0, 0, normal, pi * radius * radius / count));
   }
 }
 

@@ -1,0 +1,245 @@
+#include "host/passes/fmm.h"
+#include "host/passes/variant.h"
+#include <algorithm>
+#include <stdexcept>
+
+namespace pointgi {
+
+namespace {
+
+/// A launch aims at this many seconds: short for a watchdog or a Ctrl-C, long against the cost of launching.
+constexpr double launch_seconds = 0.1;
+
+std::vector<FmmCluster> device_clusters(const ClusterTree& tree) {
+  std::vector<FmmCluster> clusters;
+  clusters.reserve(tree.nodes.size());
+  for (const Cluster& c : tree.nodes)
+    clusters.push_back({c.first_point, c.count, c.first_child, c.child_count, c.parent});
+  return clusters;
+}
+
+std::vector<FmmGrid> device_grids(const Grids& grids) {
+  std::vector<FmmGrid> device;
+  device.reserve(grids.of.size());
+  for (const Grid& g : grids.of) {
+    FmmGrid d{};
+    for (int a = 0; a < 3; ++a) {
+      d.centre[a] = static_cast<float>(g.centre[a]);
+      d.half_side[a] = static_cast<float>(g.half_side[a]);
+    }
+    d.axis = g.axis[0] | g.axis[1] << 8 | g.axis[2] << 16;
+    d.first = g.first;
+    device.push_back(d);
+  }
+  return device;
+}
+
+/// Positions, normals and areas as seven planes, `stride` apart, zero behind the last point.
+std::vector<cl_float> point_planes(View<ExchangePoint> points, std::size_t stride) {
+  std::vector<cl_float> planes(7 * stride, 0.0f);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    for (int a = 0; a < 3; ++a) {
+      planes[a * stride + i] = static_cast<float>(points[i].x[a]);
+      planes[(3 + a) * stride + i] = static_cast<float>(points[i].n[a]);
+    }
+    planes[6 * stride + i] = static_cast<float>(points[i].area);
+  }
+  return planes;
+}
+
+} // namespace
+
+DeviceFmm::Rows DeviceFmm::upload(const SourceLists& lists) {
+  return {session_.upload(lists.begin), session_.upload(lists.source), session_.upload(lists.share)};
+}
+
+DeviceFmm::Jobs DeviceFmm::make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs) {
+  Jobs jobs;
+  jobs.items = session_.upload(items);
+  jobs.cost.assign(1, 0.0);
+  for (const double cost : costs)
+    jobs.cost.push_back(jobs.cost.back() + cost);
+  return jobs;
+}
+
+/// Jobs of blocks of nodes: of leaves from their points, level by level up and down, and of all from their far sources.
+void DeviceFmm::make_node_jobs() {
+  struct List {
+    std::vector<cl_uint4> items;
+    std::vector<double> costs;
+    void add(cl_uint cluster, cl_uint node, double cost) {
+      items.push_back({{cluster, node, 0, 0}});
+      costs.push_back(cost);
+    }
+  };
+  std::vector<List> up, down;
+  List leaves, far;
+  for (cl_uint k = 0; k < tree_.nodes.size(); ++k) {
+    const Cluster& cluster = tree_.nodes[k];
+    const Grid& grid = grids_.of[k];
+    if (cluster.level >= up.size()) {
+      up.resize(cluster.level + 1);
+      down.resize(cluster.level + 1);
+    }
+    double children = 0.0, sources = 1.0;
+    for (cl_uint c = cluster.first_child; c < cluster.first_child + cluster.child_count; ++c)
+      children += grids_.of[c].count;
+    for (cl_uint e = lists_.far.begin[k]; e < lists_.far.begin[k + 1]; ++e)
+      sources += grids_.of[lists_.far.source[e]].count;
+    for (cl_uint node = grid.first; node < grid.first + grid.count; node += FMM_LANES) {
+      if (cluster.child_count == 0)
+        leaves.add(k, node, cluster.count);
+      else
+        up[cluster.level].add(k, node, children);
+      if (k != 0) down[cluster.level].add(k, node, grids_.of[cluster.parent].count);
+      far.add(k, node, sources);
+    }
+  }
+  for (const List& level : up)
+    up_.push_back(make_jobs(level.items, level.costs));
+  for (const List& level : down)
+    down_.push_back(make_jobs(level.items, level.costs));
+  leaves_ = make_jobs(leaves.items, leaves.costs);
+  far_ = make_jobs(far.items, far.costs);
+}
+
+/// Jobs of blocks of a leaf's points: what they interpolate, and what they read of the rows of the leaf and all above.
+void DeviceFmm::make_point_jobs() {
+  std::vector<double> reads(tree_.nodes.size());
+  std::vector<cl_uint4> items;
+  std::vector<double> costs, nodes;
+  for (cl_uint k = 0; k < tree_.nodes.size(); ++k) {
+    const Cluster& cluster = tree_.nodes[k];
+    reads[k] = k == 0 ? 1.0 : reads[cluster.parent];
+    reads[k] += lists_.mid.begin[k + 1] - lists_.mid.begin[k];
+    for (cl_uint e = lists_.near_.begin[k]; e < lists_.near_.begin[k + 1]; ++e)
+      reads[k] += tree_.nodes[lists_.near_.source[e]].count;
+    if (cluster.child_count != 0) continue;
+    for (cl_uint i = 0; i < cluster.count; i += FMM_LANES) {
+      items.push_back({{k, cluster.first_point + i, std::min<cl_uint>(FMM_LANES, cluster.count - i), 0}});
+      costs.push_back(reads[k]);
+      nodes.push_back(grids_.of[k].count);
+    }
+  }
+  read_ = make_jobs(items, costs);
+  interpolate_ = make_jobs(items, nodes);
+}
+
+DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options)
+    : session_(session), tree_(tree), grids_(make_grids(tree, options.grid)),
+      lists_(make_interaction_lists(tree, links, grids_, options.lists)),
+      points_(tree.points.begin(), tree.points.end()), nodes_(static_cast<cl_uint>(grids_.nodes())),
+      stride_(static_cast<cl_uint>((points_.size() + FMM_LANES - 1) / FMM_LANES * FMM_LANES + FMM_LANES)),
+      group_(session.info().is_cpu ? 8 : 32) {
+  make_node_jobs();
+  make_point_jobs();
+  far_rows_ = upload(lists_.far);
+  mid_rows_ = upload(lists_.mid);
+  near_rows_ = upload(lists_.near_);
+  cluster_buffer_ = session_.upload(device_clusters(tree));
+  grid_buffer_ = session_.upload(device_grids(grids_));
+  std::vector<cl_float> positions;
+  for (const auto& axis : grids_.position)
+    positions.insert(positions.end(), axis.begin(), axis.end());
+  node_buffer_ = session_.upload(positions);
+  point_buffer_ = session_.upload(point_planes(points_, stride_));
+  moments_ = session_.allocate<cl_float>(FMM_VALUES * static_cast<std::size_t>(nodes_));
+  local_ = session_.allocate<cl_float>(FMM_VALUES * static_cast<std::size_t>(nodes_));
+  irradiance_ = session_.allocate<cl_float>(3 * static_cast<std::size_t>(stride_));
+  const auto kernel = [&](const char* file, const char* name) {
+    const Program program = fmm_program(file);
+    return session_.kernel(program.file, program.options, name);
+  };
+  p2m_ = kernel("fmm/expand.cl", "p2m");
+  m2m_ = kernel("fmm/expand.cl", "m2m");
+  l2l_ = kernel("fmm/expand.cl", "l2l");
+  l2p_ = kernel("fmm/expand.cl", "l2p");
+  m2l_ = kernel("fmm/m2l.cl", "m2l");
+  receive_points_ = kernel("fmm/near.cl", "receive_points");
+}
+
+template <class Launch>
+void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
+  const std::size_t all = jobs.cost.size() - 1;
+  for (std::size_t first = 0; first < all;) {
+    const double until = jobs.cost[first] + jobs.pairs_per_second * launch_seconds;
+    const auto end = std::upper_bound(jobs.cost.begin() + first + 1, jobs.cost.end(), until);
+    const std::size_t fits = static_cast<std::size_t>(end - jobs.cost.begin()) - 1 - first;
+    // Not fewer than keep the device busy, even if that takes longer.
+    const std::size_t count = std::min(all - first, std::max<std::size_t>(fits, 16 * group_));
+    const double seconds =
+        launch(LaunchShape::line(count, group_), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
+    device_seconds_ += seconds;
+    if (seconds > 0.01 * launch_seconds)
+      jobs.pairs_per_second = std::clamp((jobs.cost[first + count] - jobs.cost[first]) / seconds,
+                                         0.25 * jobs.pairs_per_second, 4.0 * jobs.pairs_per_second);
+    first += count;
+  }
+}
+
+namespace {
+
+FmmFlux device_flux(const ClusterFlux& f) {
+  FmmFlux d{};
+  for (int a = 0; a < 3; ++a) {
+    d.centre[a] = static_cast<float>(f.centre[a]);
+    for (int c = 0; c < 3; ++c) {
+      d.flux[3 * c + a] = static_cast<float>(f.flux[c][a]);
+      d.judge[3 * c + a] = static_cast<float>(f.judge[c][a]);
+    }
+  }
+  return d;
+}
+
+} // namespace
+
+void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) {
+  if (radiosity.size != 3 * points_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
+  if (judge == Judge::before && !judged_) throw std::invalid_argument("no radiosity was judged before");
+  judged_ = true;
+  std::vector<cl_float> planes(3 * static_cast<std::size_t>(stride_), 0.0f);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      planes[static_cast<std::size_t>(c) * stride_ + i] = static_cast<float>(radiosity[3 * i + c] * points_[i].area);
+  const auto flux = session_.upload(planes);
+  update_cluster_fluxes(tree_, points_, radiosity, judge, fluxes_);
+  std::vector<FmmFlux> cluster_planes(fluxes_.size());
+  std::transform(fluxes_.begin(), fluxes_.end(), cluster_planes.begin(), device_flux);
+  const auto fluxes = session_.upload(cluster_planes);
+
+  in_pieces(leaves_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+    return session_.launch(p2m_, shape, leaves_.items, first, count, cluster_buffer_, grid_buffer_, nodes_,
+                           point_buffer_, stride_, flux, moments_);
+  });
+  for (std::size_t level = up_.size(); level-- > 0;)
+    in_pieces(up_[level], [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+      return session_.launch(m2m_, shape, up_[level].items, first, count, cluster_buffer_, grid_buffer_, node_buffer_,
+                             nodes_, moments_);
+    });
+  in_pieces(far_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+    return session_.launch(m2l_, shape, far_.items, first, count, grid_buffer_, node_buffer_, nodes_, far_rows_.begin,
+                           far_rows_.source, far_rows_.share, moments_, local_);
+  });
+  for (Jobs& level : down_)
+    in_pieces(level, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+      return session_.launch(l2l_, shape, level.items, first, count, cluster_buffer_, grid_buffer_, node_buffer_,
+                             nodes_, local_);
+    });
+  in_pieces(interpolate_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+    return session_.launch(l2p_, shape, interpolate_.items, first, count, grid_buffer_, nodes_, point_buffer_, stride_,
+                           local_, irradiance_);
+  });
+  in_pieces(read_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
+    return session_.launch(receive_points_, shape, read_.items, first, count, cluster_buffer_, point_buffer_, stride_,
+                           flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, near_rows_.begin,
+                           near_rows_.source, near_rows_.share, irradiance_);
+  });
+
+  const std::vector<cl_float> h = session_.download(irradiance_, irradiance_.size);
+  irradiance.resize(3 * points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      irradiance[3 * i + c] = h[static_cast<std::size_t>(c) * stride_ + i];
+}
+
+} // namespace pointgi
