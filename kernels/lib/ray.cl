@@ -40,11 +40,23 @@ typedef struct ShadowEnds {
   float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
 } ShadowEnds;
 
+static inline ShadowEnds free_ends(void) {
+  const ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+  return ends;
+}
+
+/* Whether a disc that is met `distance` from an end of a ray belongs to the surface there. */
+static inline bool belongs_to_end(float3 end_normal, float end_radius, float distance, float radius, float3 normal) {
+  const float cosine = dot3(normal, end_normal);
+  return (distance < SELF_HIT_REACH * (end_radius + radius) && cosine > SELF_HIT_COSINE) ||
+         (distance < COINCIDENT && cosine < -SELF_HIT_COSINE);
+}
+
+static inline bool belongs_to_origin(ShadowEnds ends, float t, float radius, float3 normal) {
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal);
+}
+
 static inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
-  const float origin_cosine = dot3(normal, ends.origin_normal), target_cosine = dot3(normal, ends.target_normal);
-  const float before = t_max - t;
-  return (t < SELF_HIT_REACH * (ends.origin_radius + radius) && origin_cosine > SELF_HIT_COSINE) ||
-         (before < SELF_HIT_REACH * (ends.target_radius + radius) && target_cosine > SELF_HIT_COSINE) ||
-         (t < COINCIDENT && origin_cosine < -SELF_HIT_COSINE) ||
-         (before < COINCIDENT && target_cosine < -SELF_HIT_COSINE);
+  return belongs_to_origin(ends, t, radius, normal) ||
+         belongs_to_end(ends.target_normal, ends.target_radius, t_max - t, radius, normal);
 }

@@ -31,8 +31,7 @@ __kernel void trace_any_rays(POOL_PARAMS, const __global RayQuery* rays, __globa
   const uint i = get_global_id(0);
   if (i >= count)
     return;
-  const ShadowEnds free_ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
-  blocked[i] = trace_any(POOL_ARGS, ray_of_query(rays + i, step_delta), free_ends) ? 1u : 0u;
+  blocked[i] = trace_any(POOL_ARGS, ray_of_query(rays + i, step_delta), free_ends()) ? 1u : 0u;
 }
 
 /* surfaces[i] = (normal, t) of the blended surface of rays[i], then (albedo, 1); the second w is 0 where nothing is hit. */
