@@ -52,11 +52,17 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float dis
          (distance < COINCIDENT && cosine < -SELF_HIT_COSINE);
 }
 
-static inline bool belongs_to_origin(ShadowEnds ends, float t, float radius, float3 normal) {
-  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal);
+/* Of a ray that carries light from surface to surface, a disc near its origin is met when the ray arrives at its front:
+ * the surface is hollow there. Were it passed by, light would get out through the walls of what is closed: the inside
+ * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
+#define ARRIVAL_DISTANCE 0.1f
+
+static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float3 normal) {
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal) &&
+         !(dot3(normal, direction) < 0.0f && t > ARRIVAL_DISTANCE * radius);
 }
 
 static inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
-  return belongs_to_origin(ends, t, radius, normal) ||
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal) ||
          belongs_to_end(ends.target_normal, ends.target_radius, t_max - t, radius, normal);
 }

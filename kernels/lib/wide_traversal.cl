@@ -212,7 +212,14 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, lanes_f 
          ((distance < COINCIDENT) & (cosine < -SELF_HIT_COSINE));
 }
 
-/* trace_closest of a ray that leaves a surface: what belongs to that does not count. Nothing is known of its target. */
+/* belongs_to_origin in lanes. */
+static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
+  const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
+  return lanes_of_end(ends.origin_normal, ends.origin_radius, h->t, h) &
+         ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
+}
+
+/* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
 static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   Hit best = {ray.t_max, NO_SPLAT};
   const WideRay wide = wide_ray(ray);
@@ -224,7 +231,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       const lanes_i met = h.inside & (h.t > ray.t_min) &
                           ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
       if (any_lane(met)) {
-        const lanes_i nearer = met & ~lanes_of_end(ends.origin_normal, ends.origin_radius, h.t, &h);
+        const lanes_i nearer = met & ~lanes_of_origin(ends, ray.direction, &h);
         if (any_lane(nearer)) {
           const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
           best.t = smallest_lane(t);

@@ -26,7 +26,7 @@ static inline bool path_counts(__constant RenderParams* params, uint surfaces) {
 #endif
 }
 
-/* The ray that a path goes on with. It starts as shadow rays do (in_light), so both see the same. */
+/* The ray that a path goes on with. It starts where shadow rays do (in_light). */
 static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
   const float4 u = stratified4(id, DIMENSION_BOUNCE);
   Ray ray;

@@ -14,7 +14,7 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
     const float3 normal = points[POINT_TEXELS * k + 1u].xyz;
     float q;
     const float t = ray_disc(origin, direction, centre, normal, &q);
-    if (t > ray->t_min && t < best.t && !(leaves && belongs_to_origin(ends, t, centre.w, normal))) {
+    if (t > ray->t_min && t < best.t && !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
       best.t = t;
       best.splat = k;
     }
