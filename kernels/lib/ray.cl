@@ -31,11 +31,29 @@ typedef struct ShadowEnds {
   float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
 } ShadowEnds;
 
+static inline ShadowEnds free_ends(void) {
+  const ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+  return ends;
+}
+
+/* Whether a disc that is met `distance` from an end of a ray belongs to the surface there. */
+static inline bool belongs_to_end(float3 end_normal, float end_radius, float distance, float radius, float3 normal) {
+  const float cosine = dot3(normal, end_normal);
+  return (distance < SELF_HIT_REACH * (end_radius + radius) && cosine > SELF_HIT_COSINE) ||
+         (distance < COINCIDENT && cosine < -SELF_HIT_COSINE);
+}
+
+/* Of a ray that carries light from surface to surface, a disc near its origin is met when the ray arrives at its front:
+ * the surface is hollow there. Were it passed by, light would get out through the walls of what is closed: the inside
+ * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
+#define ARRIVAL_DISTANCE 0.1f
+
+static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float3 normal) {
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal) &&
+         !(dot3(normal, direction) < 0.0f && t > ARRIVAL_DISTANCE * radius);
+}
+
 static inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {
-  const float origin_cosine = dot3(normal, ends.origin_normal), target_cosine = dot3(normal, ends.target_normal);
-  const float before = t_max - t;
-  return (t < SELF_HIT_REACH * (ends.origin_radius + radius) && origin_cosine > SELF_HIT_COSINE) ||
-         (before < SELF_HIT_REACH * (ends.target_radius + radius) && target_cosine > SELF_HIT_COSINE) ||
-         (t < COINCIDENT && origin_cosine < -SELF_HIT_COSINE) ||
-         (before < COINCIDENT && target_cosine < -SELF_HIT_COSINE);
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal) ||
+         belongs_to_end(ends.target_normal, ends.target_radius, t_max - t, radius, normal);
 }

@@ -114,7 +114,7 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   return best;
 }
 
-/* trace_closest of a ray that leaves a surface: what belongs to the ends does not count. */
+/* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
 static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   Hit best = {ray.t_max, NO_SPLAT};
   float t_enter, t_leave;
@@ -129,7 +129,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       float q;
       const float t = ray_disc(ray.origin, ray.direction, centre, normal, &q);
       if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
-          !belongs_to_ends(ends, ray.t_max, t, centre.w, normal)) {
+          !belongs_to_origin(ends, ray.direction, t, centre.w, normal)) {
         best.t = t;
         best.splat = i;
       }

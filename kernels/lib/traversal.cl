@@ -1,5 +1,6 @@
 /* The traversal interface, on the form of the octree that was chosen: trace_closest, trace_any and trace_blended;
  * trace_closest_from, which alone pays for the end it looks at.
+ *   BOUNCED_RAYS  defined by programs whose viewers' rays also start on surfaces
  *   FORM_STEP  cells, Begin-End pool, extra splats: kernels/lib/step_traversal.cl
  *   FORM_WIDE  tight child boxes, blocks of splats: kernels/lib/wide_traversal.cl */
 #include "lib/blend.cl"
@@ -17,57 +18,47 @@
 #define RIM_REACH 8.0f
 #define MAX_RIMS 16 /* rims, one behind another, that a ray passes; the last one then counts */
 
-/* Where a viewer's ray starts: in the open (a camera), or on a surface whose own discs do not count (a bounced ray). */
-typedef struct RayStart {
-  bool on_surface;
-  float3 normal; /* of the surface */
-  float radius;
-} RayStart;
-
-static inline RayStart start_in_the_open(void) {
-  const RayStart start = {false, (float3)(0.0f), 0.0f};
-  return start;
-}
-
-static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, RayStart start) {
-  if (!start.on_surface)
-    return trace_closest(POOL_ARGS, ray);
-  const ShadowEnds ends = {start.normal, (float3)(0.0f), start.radius, 0.0f};
+/* trace_closest, or trace_closest_from in programs whose rays also leave surfaces: one walk in the code, not two. */
+static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+#ifdef BOUNCED_RAYS
   return trace_closest_from(POOL_ARGS, ray, ends);
+#else
+  return trace_closest(POOL_ARGS, ray);
+#endif
 }
 
 /* Whether the back of the disc `centre` is such a rim. */
-static inline bool sticks_out(POOL_PARAMS, Ray ray, RayStart start, float4 centre) {
+static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 centre) {
   ray.direction = centre.xyz - ray.origin;
   const float distance = sqrt(dot3(ray.direction, ray.direction));
   ray.direction /= distance;
   ray.t_max = distance - 0.05f * centre.w; /* what passes through the middle itself hides nothing */
-  const Hit hit = trace_closest_of(POOL_ARGS, ray, start);
+  const Hit hit = trace_closest_of(POOL_ARGS, ray, ends);
   return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f &&
          distance - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
 }
 
 /* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. Adds
  * the rays traced to *rays. */
-static inline Hit visible_hit(POOL_PARAMS, Ray ray, RayStart start, Hit hit, float* rays) {
+static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float* rays) {
   Ray rest = ray;
   for (int k = 0; k < MAX_RIMS; ++k) {
     if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
       break;
     *rays += 1.0f;
-    if (!sticks_out(POOL_ARGS, ray, start, pool_point_texel(POINT_TEXELS * hit.splat)))
+    if (!sticks_out(POOL_ARGS, ray, ends, pool_point_texel(POINT_TEXELS * hit.splat)))
       break;
     *rays += 1.0f;
     rest.t_min = hit.t;
-    hit = trace_closest_of(POOL_ARGS, rest, start);
+    hit = trace_closest_of(POOL_ARGS, rest, ends);
   }
   return hit;
 }
 
 /* The surface that a viewer sees, `hit` being the ray's nearest hit of all: overlapping splats near the first that counts
- * are blended (kernels/lib/blend.cl). Adds the rays traced to *rays. */
-static inline bool blended_surface(POOL_PARAMS, Ray ray, RayStart start, Hit hit, Surface* surface, float* rays) {
-  const Hit first = visible_hit(POOL_ARGS, ray, start, hit, rays);
+ * are blended (kernels/lib/blend.cl). `ends`: of the surface that the ray leaves, or free. Adds the rays traced to *rays. */
+static inline bool blended_surface(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, Surface* surface, float* rays) {
+  const Hit first = visible_hit(POOL_ARGS, ray, ends, hit, rays);
   if (first.splat == NO_SPLAT)
     return false;
   Blend blend;
@@ -80,5 +71,5 @@ static inline bool blended_surface(POOL_PARAMS, Ray ray, RayStart start, Hit hit
 
 static inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
   *rays += 1.0f;
-  return blended_surface(POOL_ARGS, ray, start_in_the_open(), trace_closest(POOL_ARGS, ray), surface, rays);
+  return blended_surface(POOL_ARGS, ray, free_ends(), trace_closest(POOL_ARGS, ray), surface, rays);
 }

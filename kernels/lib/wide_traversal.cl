@@ -204,20 +204,22 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   return best;
 }
 
-/* belongs_to_ends in lanes. */
-static inline lanes_i lanes_of_ends(ShadowEnds ends, float t_max, const BlockHits* h) {
-  const lanes_f facing_origin = fma(h->nx, (lanes_f)(ends.origin_normal.x),
-                                    fma(h->ny, (lanes_f)(ends.origin_normal.y), h->nz * ends.origin_normal.z));
-  const lanes_f facing_target = fma(h->nx, (lanes_f)(ends.target_normal.x),
-                                    fma(h->ny, (lanes_f)(ends.target_normal.y), h->nz * ends.target_normal.z));
-  const lanes_f before = t_max - h->t;
-  return ((h->t < SELF_HIT_REACH * (ends.origin_radius + h->radius)) & (facing_origin > SELF_HIT_COSINE)) |
-         ((h->t < COINCIDENT) & (facing_origin < -SELF_HIT_COSINE)) |
-         ((before < SELF_HIT_REACH * (ends.target_radius + h->radius)) & (facing_target > SELF_HIT_COSINE)) |
-         ((before < COINCIDENT) & (facing_target < -SELF_HIT_COSINE));
+/* belongs_to_end in lanes, to the same answers. */
+static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, lanes_f distance, const BlockHits* h) {
+  const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
+                             fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
+  return ((distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
+         ((distance < COINCIDENT) & (cosine < -SELF_HIT_COSINE));
 }
 
-/* trace_closest of a ray that leaves a surface: what belongs to the ends does not count. */
+/* belongs_to_origin in lanes. */
+static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
+  const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
+  return lanes_of_end(ends.origin_normal, ends.origin_radius, h->t, h) &
+         ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
+}
+
+/* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
 static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   Hit best = {ray.t_max, NO_SPLAT};
   const WideRay wide = wide_ray(ray);
@@ -229,7 +231,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       const lanes_i met = h.inside & (h.t > ray.t_min) &
                           ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
       if (any_lane(met)) {
-        const lanes_i nearer = met & ~lanes_of_ends(ends, ray.t_max, &h);
+        const lanes_i nearer = met & ~lanes_of_origin(ends, ray.direction, &h);
         if (any_lane(nearer)) {
           const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
           best.t = smallest_lane(t);
@@ -249,7 +251,9 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
-      if (any_lane(hit) && any_lane(hit & ~lanes_of_ends(ends, ray.t_max, &h)))
+      if (any_lane(hit) &&
+          any_lane(hit & ~lanes_of_end(ends.origin_normal, ends.origin_radius, h.t, &h) &
+                   ~lanes_of_end(ends.target_normal, ends.target_radius, ray.t_max - h.t, &h)))
         return true;
     })
   }

@@ -50,7 +50,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   float3 diffuse = (float3)(0.0f);
 #endif
   sums[FILM_RAYS] += 1.0f;
-  if (blended_surface(POOL_ARGS, ray, start_in_the_open(), hit, &s, &sums[FILM_RAYS])) {
+  if (blended_surface(POOL_ARGS, ray, free_ends(), hit, &s, &sums[FILM_RAYS])) {
     point = s.splat;
     add_surface(lights.params, ray, t_start, &s, sums);
     if (s.front) {

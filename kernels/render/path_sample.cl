@@ -4,6 +4,7 @@
  * rho. Emission and environment count where a camera's ray meets them; where a bounced ray does, the shadow rays of the
  * surface before have counted them. No sample is clamped: what is noisy shows in the variance.
  *   PATH_CLASSES  defined only where params->path_classes leaves some paths out */
+#define BOUNCED_RAYS
 #include "render/eye_sample.cl"
 
 /* Uses of random numbers at a vertex, after those of kernels/lib/direct_light.cl (1 to 3). */
@@ -25,7 +26,7 @@ static inline bool path_counts(__constant RenderParams* params, uint surfaces) {
 #endif
 }
 
-/* The ray that a path goes on with. It starts as shadow rays do (in_light), so both see the same. */
+/* The ray that a path goes on with. It starts where shadow rays do (in_light). */
 static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
   const float4 u = stratified4(id, DIMENSION_BOUNCE);
   Ray ray;
@@ -51,49 +52,57 @@ static inline bool survives(const Surface* s, SampleId id, uint surfaces, float3
   return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
 }
 
-/* As add_sample, with all light that the eye ray finds. */
+/* What an eye ray finds before any light is reflected (LE). */
+static inline float3 seen_light(Lights lights, bool met, const Surface* s) {
+  if (!met)
+    return load3_constant(lights.params->environment);
+#ifdef HAS_EMITTERS
+  if (s->front)
+    return load3(lights.materials[s->material].emission);
+#endif
+  return (float3)(0.0f);
+}
+
+/* Without a branch, as an address that is chosen would put the sums into memory. */
+static inline void add_radiance(float3 radiance, bool direct, float* sums) {
+  const float3 none = (float3)(0.0f);
+  add_direct(direct ? radiance : none, sums);
+  add_diffuse(direct ? none : radiance, sums);
+}
+
+/* As add_sample, with all light that the eye ray finds. Always inline: as a function of its own it is given the sums, and
+ * the ends of rays, in memory. */
+__attribute__((always_inline))
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
-  float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), weight = (float3)(1.0f);
-  RayStart start = start_in_the_open();
+  float3 weight = (float3)(1.0f);
+  ShadowEnds ends = free_ends();
   for (uint surfaces = 1u;; ++surfaces) {
     Surface s;
+    float3 radiance = (float3)(0.0f);
     sums[FILM_RAYS] += 1.0f;
-    const bool met = blended_surface(POOL_ARGS, ray, start, hit, &s, &sums[FILM_RAYS]);
-    if (surfaces == 1u && path_counts(lights.params, 0u) && !met)
-      direct = load3_constant(lights.params->environment);
-    if (surfaces == 1u && met) {
-      point = s.splat;
-      add_surface(lights.params, ray, t_start, &s, sums);
+    const bool met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
+    if (surfaces == 1u) {
+      if (met) {
+        point = s.splat;
+        add_surface(lights.params, ray, t_start, &s, sums);
+      }
+      if (path_counts(lights.params, 0u))
+        radiance = seen_light(lights, met, &s);
     }
-    if (!met || !s.front)
-      break;
-#ifdef HAS_EMITTERS
-    if (surfaces == 1u && path_counts(lights.params, 0u))
-      direct = load3(lights.materials[s.material].emission);
-#endif
-    if (surfaces > lights.params->most_bounces)
-      break;
+    const bool shines = met && s.front && surfaces <= lights.params->most_bounces;
 #ifdef HAS_LIGHT
-    if (path_counts(lights.params, surfaces)) {
-      const float3 found =
-          weight * (s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]));
-      if (surfaces == 1u)
-        direct += found;
-      else
-        diffuse += found;
-    }
+    if (shines && path_counts(lights.params, surfaces))
+      radiance += weight * (s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]));
 #endif
-    if (surfaces == lights.params->most_bounces || !survives(&s, id, surfaces, &weight))
+    add_radiance(radiance, surfaces == 1u, sums);
+    if (!shines || surfaces == lights.params->most_bounces || !survives(&s, id, surfaces, &weight))
       break;
     ray = bounced_ray(&s, id, lights.params->step_delta);
-    start.on_surface = true;
-    start.normal = s.normal;
-    start.radius = s.radius;
-    hit = trace_closest_of(POOL_ARGS, ray, start);
+    ends.origin_normal = s.normal;
+    ends.origin_radius = s.radius;
+    hit = trace_closest_from(POOL_ARGS, ray, ends);
     id.vertex += 1u;
   }
-  add_direct(direct, sums);
-  add_diffuse(diffuse, sums);
   return point;
 }

@@ -25,14 +25,25 @@ __kernel void trace_closest_rays(POOL_PARAMS, const __global RayQuery* rays, __g
   answers[i].splat = hit.splat;
 }
 
+/* answers[i] = nearest hit of rays[i] that does not belong to the surface which it leaves: surfaces[i] = (normal, radius). */
+__kernel void trace_closest_from_rays(POOL_PARAMS, const __global RayQuery* rays, const __global float4* surfaces,
+                                      __global RayAnswer* answers, uint count, float step_delta) {
+  const uint i = get_global_id(0);
+  if (i >= count)
+    return;
+  const ShadowEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
+  const Hit hit = trace_closest_from(POOL_ARGS, ray_of_query(rays + i, step_delta), ends);
+  answers[i].t = hit.t;
+  answers[i].splat = hit.splat;
+}
+
 /* blocked[i] = 1 when any disc is hit in (t_min, t_max) of rays[i], else 0. Both ends are free: nothing is excluded. */
 __kernel void trace_any_rays(POOL_PARAMS, const __global RayQuery* rays, __global uint* blocked, uint count,
                              float step_delta) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;
-  const ShadowEnds free_ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
-  blocked[i] = trace_any(POOL_ARGS, ray_of_query(rays + i, step_delta), free_ends) ? 1u : 0u;
+  blocked[i] = trace_any(POOL_ARGS, ray_of_query(rays + i, step_delta), free_ends()) ? 1u : 0u;
 }
 
 /* surfaces[i] = (normal, t) of the blended surface of rays[i], then (albedo, 1); the second w is 0 where nothing is hit. */

@@ -180,6 +180,46 @@ TEST_CASE("any-hit says what closest-hit says, and blending agrees between the f
   }
 }
 
+TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan says") {
+  const auto splats = mixed_splats();
+  auto rays = hard_rays(splats, 100'000, 51);
+  std::vector<cl_float4> surfaces(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) { // off the middle of a disc, or of a place near it
+    const Splat& s = splats[(i * 7919) % splats.size()];
+    surfaces[i] = {{s.normal[0], s.normal[1], s.normal[2], i % 3 == 0 ? 4.0f * s.radius : s.radius}};
+    for (int a = 0; a < 3; ++a)
+      rays[i].origin[a] = s.position[a] + (i % 2 == 0 ? 0.0f : 0.3f * s.radius * s.normal[(a + 1) % 3]);
+    rays[i].t_min = -4e-6f; // as light does (kernels/lib/direct_light.cl)
+  }
+  Session& device = session();
+  const auto queries = device.upload(rays);
+  const auto starts = device.upload(surfaces);
+  const auto count = static_cast<cl_uint>(rays.size());
+  const auto answers = device.allocate<RayAnswer>(rays.size());
+  const auto points = device.upload(splats);
+  cl::Kernel scan = device.kernel("traverse/brute_force.cl", "", "brute_force_closest_from");
+  device.launch(scan, LaunchShape::line(rays.size()), points, static_cast<cl_uint>(splats.size()), queries, starts,
+                answers, count);
+  const std::vector<RayAnswer> truth = device.download(answers, rays.size());
+  CHECK(hits(truth) > rays.size() / 4);
+  CHECK(differences(trace_all(splats, rays), truth) > rays.size() / 10); // it does make a difference
+  std::set<std::string> seen;
+  for (const TraversalVariant& variant : valid_variants()) {
+    const Program program = trace_program(variant);
+    if (!seen.insert(program.options + name_of(variant.order)).second) continue;
+    CAPTURE(name_of(variant));
+    const OctreePools pools = build_pools(splats, variant);
+    const DevicePools on_device = upload_pools(device, pools, variant.storage);
+    cl::Kernel kernel = device.kernel(program.file, program.options, "trace_closest_from_rays");
+    device.launch(kernel, LaunchShape::line(rays.size(), variant.group.size()), on_device.nodes, on_device.leaves,
+                  on_device.points, queries, starts, answers, count, 0.0f);
+    std::vector<RayAnswer> found = device.download(answers, rays.size());
+    for (RayAnswer& answer : found)
+      answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : source_of(pools)[answer.splat];
+    CHECK(differences(found, truth) == 0);
+  }
+}
+
 TEST_CASE("packets of rays find what the rays find one by one") {
   const auto splats = mixed_splats();
   // Narrow bundles and wide ones, along axes, across the octants, from inside discs; three bundles with wide gaps

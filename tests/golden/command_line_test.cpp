@@ -80,7 +80,7 @@ TEST_CASE("wrong usage is exit code 2 and says what is right") {
       {"render " + scene + " --pixelbounds 0,50,0,10", "0 <= x0 < x1 <= 40"},
       {"render " + scene + " --pixelbounds 5,5,0,10", "x0 < x1"},
       {"render " + scene + " --quality best", "draft"},
-      {"render " + scene + " --integrator path", "pointgi"},
+      {"render " + scene + " --integrator radiance", "radiance"},
       {"render " + scene + " --threads 0", "--threads"},
       {"render " + scene + " --set render.spp", "render.spp"},
   };
@@ -234,4 +234,47 @@ TEST_CASE("every sample file of other projects ends with 0 or 3 and a place in i
     CHECK((run.code == 0 || run.code == 3));
     if (run.code == 3) CHECK_THAT(run.err, Contains("line ") || Contains("byte "));
   }
+}
+
+TEST_CASE("compare: figures on stdout as text or JSON, and exit codes") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene()), a = folder.file("a.exr"),
+                    b = folder.file("b.exr"), part = folder.file("part.exr");
+  REQUIRE(run_program("render " + scene + " --quiet --seed 1 -o " + a).code == 0);
+  REQUIRE(run_program("render " + scene + " --quiet --integrator path --seed 2 -o " + b).code == 0);
+  REQUIRE(run_program("render " + scene + " --quiet --pixelbounds 10,30,5,20 -o " + part).code == 0);
+  Run run = run_program("compare " + b + " " + a + " --json");
+  REQUIRE(run.code == 0);
+  const auto found = nlohmann::json::parse(run.out);
+  CHECK(found["pixels"] == 40 * 30);
+  CHECK(found["all"]["mse"] > 0.0);
+  for (const char* colour : {"R", "G", "B", "all"})
+    for (const char* figure : {"mean_a", "mean_b", "mse", "rel_mse", "bias", "p99", "ssim"})
+      CHECK(found[colour][figure].is_number());
+  run = run_program("compare " + a + " " + part);
+  CHECK(run.code == 0);
+  CHECK_THAT(run.out, Contains("300 pixels, x from 10 to 30, y from 5 to 20") && Contains("+0.0000%"));
+  run = run_program("compare " + a + " " + folder.file("none.exr"));
+  CHECK(run.code == 3);
+  CHECK_THAT(run.err, Contains("none.exr: no such file"));
+  CHECK(run_program("compare " + a).code == 2);
+  CHECK(run_program("compare " + a + " " + scene).code == 3);
+}
+
+TEST_CASE("--paths goes with the path tracer only") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene()), out = " --quiet -o " + folder.file("a.exr");
+  Run run = run_program("render " + scene + out + " --paths LDE");
+  CHECK(run.code == 2);
+  CHECK_THAT(run.err, Contains("--integrator path"));
+  run = run_program("render " + scene + out + " --integrator path --paths LS+DE");
+  CHECK(run.code == 2);
+  CHECK_THAT(run.err, Contains("specular"));
+  CHECK(run_program("render " + scene + out + " --integrator radiance").code == 2);
+  REQUIRE(run_program("render " + scene + out + " --integrator path --paths LD+E").code == 0);
+  const Picture picture = read_exr(folder.file("a.exr"));
+  CHECK(picture.attributes.text.at("pointgi/integrator") == "path");
+  CHECK(picture.attributes.text.at("pointgi/paths") == "LD+E");
+  for (const char* channel : {"Variance.R", "Diffuse.B", "Direct.G"})
+    CHECK(picture.channels.count(channel) == 1);
 }
