@@ -61,12 +61,14 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   const RadiosityMap map =
       map_visibility(session, pools, variant, points, scene.radiosity, scene.render.seed, frame.side);
   light.links = map.vmap.statistics;
+  if (map.kept) spdlog::info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
   stages.start("fmm");
   const Buffer<float> direct = direct_irradiance_of_points(session, pools, variant, lighting, frame.side, points.size,
                                                            samples_for(lighting), true, stop);
   if (stop()) throw Error(ExitCode::interrupted, "interrupted before the radiosity was solved; nothing was written");
-  RadiosityField field = solve_radiosity_field(map, session.download(direct, 3 * points.size), scene.radiosity);
+  RadiosityField field =
+      solve_radiosity_field(session, map, session.download(direct, 3 * points.size), scene.radiosity);
   light.irradiance = upload_field(session, field.irradiance);
   light.solution = std::move(field.solution);
   stages.finish(points.size, "points");

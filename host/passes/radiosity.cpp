@@ -1,6 +1,7 @@
 #include "host/passes/radiosity.h"
-#include "fmm/operators/fmm_operator.h"
+#include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
+#include "host/passes/vmap_cache.h"
 #include <stdexcept>
 
 namespace pointgi {
@@ -13,11 +14,14 @@ RadiosityMap map_visibility(Session& session, const DevicePools& pools, const Tr
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.seed = seed;
-  map.vmap = make_links(map.tree, oracle, options);
+  const DeviceInfo& device = session.info();
+  map.vmap = kept_or_made_links(map.tree, points, oracle, options,
+                                device.name + ", " + device.driver + ", " + name_of(variant), &map.kept);
   return map;
 }
 
-RadiosityField solve_radiosity_field(const RadiosityMap& map, View<float> direct, const RadiositySettings& settings) {
+RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
+                                     const RadiositySettings& settings) {
   const std::size_t points = map.tree.points.size();
   if (direct.size != 3 * points) throw std::invalid_argument("radiosity: three direct irradiances a point");
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
@@ -31,7 +35,7 @@ RadiosityField solve_radiosity_field(const RadiosityMap& map, View<float> direct
   }
   FmmOptions options;
   options.grid.order = static_cast<unsigned>(settings.order);
-  FmmOperator exchange(map.tree, map.vmap.links, options);
+  DeviceFmm exchange(session, map.tree, map.vmap.links, options);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
   RadiosityField field;

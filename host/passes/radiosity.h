@@ -11,6 +11,7 @@ namespace pointgi {
 struct RadiosityMap {
   ClusterTree tree; ///< over the pool's points: order[k] is a place in the pool
   VMap vmap;
+  bool kept = false; ///< from an earlier run: nothing was asked
 };
 
 /// Builds the clusters and asks the device for their visibility. Throws Error(device), Error(memory).
@@ -26,6 +27,7 @@ struct RadiosityField {
 
 /// `direct` [points x 3]: what the lights give each point (point_irradiance.h), same unit. Solves B = rho (H_direct +
 /// H(B)) to settings.tolerance and gathers H(B) once more. Throws std::invalid_argument on sizes that differ.
-RadiosityField solve_radiosity_field(const RadiosityMap& map, View<float> direct, const RadiositySettings& settings);
+RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
+                                     const RadiositySettings& settings);
 
 } // namespace pointgi
