@@ -1,0 +1,105 @@
+/// Light between surfaces as a user gets it, [radiosity], against what is known (truths.md §1) and the path tracer.
+#include "tests/support/render.h"
+#include "tests/support/run_program.h"
+#include <catch2/catch.hpp>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+std::string with_radiosity(const std::string& scene, const std::string& settings = "") {
+  return scene + "[radiosity]\n" + settings;
+}
+
+/// The inside of a sphere of radius 1 with a point light of 4 pi W, 1 W/sr, in its middle, seen from within.
+std::string lit_sphere(double albedo, double spacing) {
+  const std::string rho = std::to_string(albedo);
+  return "version = 1\n[render]\nsize = [24, 16]\nspp = 8\n[camera]\nposition = [0.3, 0.2, 0.4]\n"
+         "look_at = [-0.5, 0.1, -1.0]\nfov_deg = 70.0\n[[material]]\nname = \"wall\"\ntype = \"diffuse\"\nalbedo = [" +
+         rho + ", " + rho + ", " + rho +
+         "]\n[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 1.0\ninward = true\nspacing = " +
+         std::to_string(spacing) +
+         "\nmaterial = \"wall\"\n[[light]]\ntype = \"point\"\nposition = [0.0, 0.0, 0.0]\n"
+         "power_w = [12.566370614359172, 12.566370614359172, 12.566370614359172]\n";
+}
+
+/// A room open to the front, walls of two colours, a block on the floor, a lamp near the ceiling.
+std::string room_with_block() {
+  const auto quad = [](const char* corner, const char* u, const char* v, const char* material) {
+    return std::string("[[shape]]\ntype = \"quad\"\ncorner = [") + corner + "]\nedge_u = [" + u + "]\nedge_v = [" + v +
+           "]\nspacing = 0.06\nmaterial = \"" + material + "\"\n";
+  };
+  return "version = 1\n[render]\nsize = [40, 40]\nspp = 64\n[camera]\nposition = [0.0, 1.0, 4.2]\n"
+         "look_at = [0.0, 1.0, 0.0]\nfov_deg = 32.0\n"
+         "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.75, 0.75, 0.75]\n"
+         "[[material]]\nname = \"red\"\ntype = \"diffuse\"\nalbedo = [0.7, 0.1, 0.1]\n"
+         "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\nemission = [12.0, 11.0, 9.0]\n" +
+         quad("-1, 0, -1", "0, 0, 2", "2, 0, 0", "white") + quad("-1, 2, -1", "2, 0, 0", "0, 0, 2", "white") +
+         quad("-1, 0, -1", "2, 0, 0", "0, 2, 0", "white") + quad("-1, 0, -1", "0, 2, 0", "0, 0, 2", "red") +
+         quad("1, 0, -1", "0, 0, 2", "0, 2, 0", "white") + quad("-0.3, 1.97, -0.3", "0.6, 0, 0", "0, 0, 0.6", "lamp") +
+         "[[shape]]\ntype = \"box\"\nmin = [-0.2, 0.0, -0.4]\nmax = [0.5, 0.8, 0.2]\nspacing = 0.05\n"
+         "material = \"white\"\n";
+}
+
+} // namespace
+
+TEST_CASE("a point light in a closed sphere: L = rho I / (pi R^2 (1 - rho)), nearer with closer points") {
+  for (const double albedo : {0.5, 0.8}) {
+    const double truth = albedo / (pi * (1.0 - albedo));
+    double before = INFINITY;
+    for (const double spacing : {0.12, 0.06}) {
+      CAPTURE(albedo, spacing);
+      const Picture picture = render_text(with_radiosity(lit_sphere(albedo, spacing), "tolerance = 1e-4\n"));
+      const double error = std::fabs(mean(picture, "G") / truth - 1.0);
+      // 1 % is the bound of truths.md; the V-map's epsilon of 1e-2 darkens by up to as much (octree/vmap/make_links.h),
+      // and each bounce repeats it.
+      CHECK(error < (spacing < 0.1 ? 0.02 : 0.04) / (1.0 - albedo) * 0.5);
+      CHECK(error < before + 0.005); // the share that the V-map decides does not fall with the spacing
+      before = error;
+      CHECK(mean(picture, "Direct.G") == Approx(albedo / pi).epsilon(0.01));
+      CHECK(largest(picture, "R") < 1.15 * truth); // no speckle
+    }
+  }
+}
+
+TEST_CASE("a room with a block and a lamp: the picture of the path tracer, colours that bleed") {
+  const Picture fast = render_text(with_radiosity(room_with_block()));
+  const Picture truth = render_text(room_with_block(), [](RenderOptions& options) {
+    options.integrator = "path";
+    options.spp = 1024;
+  });
+  for (const char* channel : {"R", "G", "B"}) {
+    CAPTURE(channel);
+    CHECK(mean(fast, channel) == Approx(mean(truth, channel)).epsilon(0.03)); // V-map 1 %, light samples of 64 rays 1 %
+  }
+  CHECK(mean(fast, "Diffuse.R") > 1.05 * mean(fast, "Diffuse.G")); // off the red wall
+  double together = 0.0;
+  for (std::size_t i = 0; i < fast.channels.at("R").size(); ++i)
+    together = std::max<double>(together, std::fabs(fast.channels.at("R")[i] - fast.channels.at("Direct.R")[i] -
+                                                    fast.channels.at("Diffuse.R")[i]));
+  CHECK(together < 1e-4);
+}
+
+TEST_CASE("radiosity runs where it is asked for and something shines, is kept, and gives the same bits again") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("room.toml", with_radiosity(lit_sphere(0.5, 0.15)));
+  const std::string cache = "POINTGI_CACHE_DIR=" + folder.file("cache");
+  const Run first = run_program("render " + scene + " --threads 1 -o " + folder.file("a.exr"), cache);
+  REQUIRE(first.code == 0);
+  CHECK_THAT(first.err, Catch::Contains("radiosity: ") && !Catch::Contains("kept from an earlier run"));
+  const Run second = run_program("render " + scene + " --threads 2 -o " + folder.file("b.exr"), cache);
+  REQUIRE(second.code == 0);
+  CHECK_THAT(second.err, Catch::Contains("V-map: kept from an earlier run"));
+  CHECK(read_exr(folder.file("a.exr")).channels == read_exr(folder.file("b.exr")).channels);
+  const std::string dark = folder.write("dark.toml", with_radiosity(room_with_block()));
+  const Run none =
+      run_program("render " + dark + " --set material.2.emission=[0,0,0] -o " + folder.file("c.exr"), cache);
+  CHECK(none.code == 0);
+  CHECK_THAT(none.err, Catch::Contains("no light and no emission"));
+  const Run refused = run_program("render " + scene + " --set radiosity.direct_light=radiosity", cache);
+  CHECK(refused.code == 3);
+  CHECK_THAT(refused.err, Catch::Contains("direct_light") && Catch::Contains("not in this version"));
+}
