@@ -70,9 +70,16 @@ static inline void add_radiance(float3 radiance, bool direct, float* sums) {
   add_diffuse(direct ? none : radiance, sums);
 }
 
-/* As add_sample, with all light that the eye ray finds. Always inline: as a function of its own it is given the sums, and
- * the ends of rays, in memory. */
-__attribute__((always_inline))
+/* Always inline: as a function of its own add_path is given the sums, and the ends of rays, in memory. Compilers that are
+ * told not to optimise leave marks of forced inlining that simulators do not know. */
+#ifdef __OPTIMIZE__
+#define IN_ITS_PLACE __attribute__((always_inline))
+#else
+#define IN_ITS_PLACE
+#endif
+
+/* As add_sample, with all light that the eye ray finds. */
+IN_ITS_PLACE
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 weight = (float3)(1.0f);
