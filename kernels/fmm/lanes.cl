@@ -24,3 +24,15 @@ static inline void store_block(fmm_lanes v, __global float* to, uint count) {
   for (uint k = 0u; k < count; ++k)
     to[k] = lanes[k];
 }
+
+/* The same, added to what is there. Not by load_fmm: the rest of the block is being written by others. */
+static inline void add_block(fmm_lanes v, __global float* to, uint count) {
+  if (count == FMM_LANES) {
+    store_fmm(load_fmm(to) + v, to);
+    return;
+  }
+  float lanes[FMM_LANES];
+  store_fmm(v, lanes);
+  for (uint k = 0u; k < count; ++k)
+    to[k] += lanes[k];
+}

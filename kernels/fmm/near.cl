@@ -95,7 +95,7 @@ __kernel void receive_points(const __global uint4* jobs, uint first_job, uint co
       break;
   }
   __global float* to = irradiance + job.y;
-  store_block(load_fmm(to) + r.red, to, job.z);
-  store_block(load_fmm(to + stride) + r.green, to + stride, job.z);
-  store_block(load_fmm(to + 2u * stride) + r.blue, to + 2u * stride, job.z);
+  add_block(r.red, to, job.z);
+  add_block(r.green, to + stride, job.z);
+  add_block(r.blue, to + 2u * stride, job.z);
 }
