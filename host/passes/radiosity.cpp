@@ -13,6 +13,7 @@ RadiosityMap map_visibility(Session& session, const DevicePools& pools, const Tr
   DeviceVisibility oracle(session, pools, variant, map.tree.points, static_cast<float>(variant.step_delta / side));
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
+  options.epsilon = static_cast<float>(settings.epsilon);
   options.seed = seed;
   const DeviceInfo& device = session.info();
   map.vmap = kept_or_made_links(map.tree, points, oracle, options,

@@ -153,7 +153,8 @@ VariantChoice choose_variant(const TraversalSettings& traversal, const OctreeSet
     reason = why;
   }
   throw Error(scene_speaks ? ExitCode::usage : ExitCode::device,
-              "the settings of [octree] and [traversal] do not go together on " + device.name + ": " + reason);
+              "the settings of [octree] and [traversal] do not go together on " + device.name + ": " + reason +
+                  "; change one of them, or leave them out");
 }
 
 } // namespace pointgi

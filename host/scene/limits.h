@@ -48,6 +48,7 @@ inline constexpr NumberRange absorption{0.0, 1e18, false, false, "from 0 to 1e18
 inline constexpr NumberRange ior{0.0, 1e6, true, false, "> 0 and at most 1e6"};
 inline constexpr NumberRange exponent{0.0, 1e6, false, false, "from 0 to 1e6"};
 inline constexpr NumberRange tolerance{0.0, 1.0, true, true, "> 0 and < 1"};
+inline constexpr NumberRange epsilon = tolerance;
 
 /// Sine of the angle below which two directions count as parallel: a camera's view and its up, a quad's edges.
 inline constexpr double parallel_sine = 1e-6;

@@ -120,6 +120,7 @@ struct RadiositySettings {
   std::string method = "fmm";
   int order = 3;
   int vmap_samples = 8;
+  double epsilon = 3e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
   std::string direct_light = "shadow_rays";
   std::optional<SourcePlace> place; ///< set when the file has the section

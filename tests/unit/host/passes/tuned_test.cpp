@@ -96,7 +96,7 @@ TEST_CASE("settings that do not go together are refused with the precondition") 
     FAIL("not refused");
   } catch (const Error& error) {
     CHECK(error.code() == ExitCode::usage);
-    CHECK_THAT(error.what(), Contains("the wide form takes N = 2") && Contains("profile --list"));
+    CHECK_THAT(error.what(), Contains("the wide form takes N = 2") && Contains("leave them out"));
   }
   traversal = {};
   traversal.grouping = RayGrouping::packet;

@@ -107,6 +107,7 @@ radiance = [0.1, 0.2, 0.3]
 method = "progressive"
 order = 4
 vmap_samples = 16
+epsilon = 2e-2
 tolerance = 1e-4
 direct_light = "radiosity"
 [caustics]
@@ -160,6 +161,7 @@ TEST_CASE("every key of the settings arrives", "[scene]") {
   CHECK(scene.radiosity.method == "progressive");
   CHECK(scene.radiosity.order == 4);
   CHECK(scene.radiosity.vmap_samples == 16);
+  CHECK(scene.radiosity.epsilon == 2e-2);
   CHECK(scene.radiosity.tolerance == 1e-4);
   CHECK(scene.radiosity.direct_light == "radiosity");
   CHECK(scene.radiosity.place.has_value());
