@@ -261,7 +261,7 @@ TEST_CASE("compare: figures on stdout as text or JSON, and exit codes") {
   CHECK(run_program("compare " + a + " " + scene).code == 3);
 }
 
-TEST_CASE("--paths goes with the path tracer only") {
+TEST_CASE("light paths go with the path tracer only") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene()), out = " --quiet -o " + folder.file("a.exr");
   Run run = run_program("render " + scene + out + " --paths LDE");
