@@ -1,15 +1,12 @@
 // scripts/crosscompile on planted programs: it must pass a good one and name the ones that are bad for GPUs.
 #include "tests/support/scans.h"
+#include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <filesystem>
+#include <cstdlib>
 #include <fstream>
-#include <stdexcept>
-#include <stdlib.h>
 #include <string>
 #include <sys/wait.h>
 
-namespace fs = std::filesystem;
 namespace test = pointgi::test;
 
 namespace {
@@ -47,42 +44,25 @@ const char* const images =
 /// A folder as `pointgi profile --write-programs` makes it.
 class Programs {
 public:
-  Programs() {
-    std::string pattern = (fs::temp_directory_path() / "pointgi_crosscompile_XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot create " + pattern);
-    root_ = pattern;
-  }
-  ~Programs() {
-    std::error_code ignored;
-    fs::remove_all(root_, ignored);
-  }
-  Programs(const Programs&) = delete;
-  Programs& operator=(const Programs&) = delete;
-
   void put(const std::string& name, const std::string& text, const std::string& classes) const {
-    std::ofstream(root_ / name) << text;
-    std::ofstream(root_ / "index.tsv", std::ios::app)
+    folder_.write(name, text);
+    std::ofstream(folder_.file("index.tsv"), std::ios::app)
         << name << "\tplanted/" << name << "\t" << classes << "\t-cl-std=CL1.2 -D N=1\n";
   }
 
-  std::string table() const {
-    std::ifstream file(root_ / "crosscompile.tsv");
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+  std::string table() const { return test::contents(folder_.file("crosscompile.tsv")); }
 
   /// What the script prints and its exit code.
   std::pair<std::string, int> check(const std::string& environment = "") const {
-    const std::string output = root_ / "output.txt";
+    const std::string output = folder_.file("output.txt");
     const int status = std::system(("cd / && " + environment + " '" POINTGI_SOURCE_DIR "/scripts/crosscompile' '" +
-                                    root_.string() + "' > '" + output + "' 2>&1")
+                                    folder_.file("") + "' > '" + output + "' 2>&1")
                                        .c_str());
-    std::ifstream file(output);
-    return {{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()},
-            WIFEXITED(status) ? WEXITSTATUS(status) : -1};
+    return {test::contents(output), WIFEXITED(status) ? WEXITSTATUS(status) : -1};
   }
 
 private:
-  fs::path root_;
+  test::TemporaryFolder folder_;
 };
 
 bool skipped(const std::string& output) {

@@ -1,14 +1,14 @@
 // scripts/check/layers on planted trees: it must pass the good one and find every bad include by file and line.
+#include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
-#include <stdlib.h>
 #include <string>
 #include <sys/wait.h>
 
 namespace fs = std::filesystem;
+namespace test = pointgi::test;
 
 namespace {
 
@@ -16,9 +16,6 @@ namespace {
 class Tree {
 public:
   Tree() {
-    std::string pattern = (fs::temp_directory_path() / "pointgi_layers_XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot create " + pattern);
-    root_ = pattern;
     put("kernels/shared/scalar.h", "#ifdef __cplusplus\n#include <cstdint>\n#endif\n");
     put("kernels/shared/types.h", "#include \"shared/scalar.h\"\n");
     put("kernels/lib/rng.h", "#include \"shared/types.h\"\n");
@@ -39,31 +36,22 @@ public:
     put("tests/support/scans.h", "#include \"host/app/main.cpp\"\n#include <CL/cl.h>\n");
     put("tests/unit/scans_test.cpp", "#include \"tests/support/scans.h\"\n");
   }
-  ~Tree() {
-    std::error_code ignored;
-    fs::remove_all(root_, ignored);
-  }
-  Tree(const Tree&) = delete;
-  Tree& operator=(const Tree&) = delete;
-
   void put(const std::string& file, const std::string& text) const {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text;
+    fs::create_directories(fs::path(folder_.file(file)).parent_path());
+    folder_.write(file, text);
   }
 
   /// What the script prints and its exit code.
   std::pair<std::string, int> check() const {
-    const std::string output = root_ / "output.txt";
+    const std::string output = folder_.file("output.txt");
     const int status = std::system(
-        ("cd / && '" POINTGI_SOURCE_DIR "/scripts/check/layers' '" + root_.string() + "' > '" + output + "' 2>&1")
+        ("cd / && '" POINTGI_SOURCE_DIR "/scripts/check/layers' '" + folder_.file("") + "' > '" + output + "' 2>&1")
             .c_str());
-    std::ifstream file(output);
-    return {{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()},
-            WIFEXITED(status) ? WEXITSTATUS(status) : -1};
+    return {test::contents(output), WIFEXITED(status) ? WEXITSTATUS(status) : -1};
   }
 
 private:
-  fs::path root_;
+  test::TemporaryFolder folder_;
 };
 
 struct BadInclude {
