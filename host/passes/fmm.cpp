@@ -50,7 +50,8 @@ std::vector<cl_float> point_planes(View<ExchangePoint> points, std::size_t strid
 } // namespace
 
 DeviceFmm::Rows DeviceFmm::upload(const SourceLists& lists) {
-  return {session_.upload(lists.begin), session_.upload(lists.source), session_.upload(lists.share)};
+  return {session_.upload(lists.begin), session_.upload(lists.source), session_.upload(lists.share),
+          session_.upload(lists.own_share)};
 }
 
 DeviceFmm::Jobs DeviceFmm::make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs) {
@@ -125,9 +126,10 @@ void DeviceFmm::make_point_jobs() {
   interpolate_ = make_jobs(items, nodes);
 }
 
-DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options)
+DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options,
+                     View<std::uint8_t> point_shares)
     : session_(session), tree_(tree), grids_(make_grids(tree, options.grid)),
-      lists_(make_interaction_lists(tree, links, grids_, options.lists)),
+      lists_(make_interaction_lists(tree, links, point_shares.size, grids_, options.lists)),
       points_(tree.points.begin(), tree.points.end()), nodes_(static_cast<cl_uint>(grids_.nodes())),
       stride_(static_cast<cl_uint>((points_.size() + FMM_LANES - 1) / FMM_LANES * FMM_LANES + FMM_LANES)),
       group_(session.info().is_cpu ? 8 : 32) {
@@ -136,6 +138,9 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
   far_rows_ = upload(lists_.far);
   mid_rows_ = upload(lists_.mid);
   near_rows_ = upload(lists_.near_);
+  std::vector<cl_uchar> shares(point_shares.begin(), point_shares.end());
+  shares.resize(shares.size() + FMM_LANES); // blocks read past the last point
+  point_shares_ = session_.upload(shares);
   cluster_buffer_ = session_.upload(device_clusters(tree));
   grid_buffer_ = session_.upload(device_grids(grids_));
   std::vector<cl_float> positions;
@@ -231,8 +236,9 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
   });
   in_pieces(read_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
     return session_.launch(receive_points_, shape, read_.items, first, count, cluster_buffer_, point_buffer_, stride_,
-                           flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, near_rows_.begin,
-                           near_rows_.source, near_rows_.share, irradiance_);
+                           flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, mid_rows_.own_share,
+                           near_rows_.begin, near_rows_.source, near_rows_.share, near_rows_.own_share, point_shares_,
+                           irradiance_);
   });
 
   const std::vector<cl_float> h = session_.download(irradiance_, irradiance_.size);

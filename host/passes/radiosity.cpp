@@ -13,6 +13,7 @@ RadiosityMap map_visibility(Session& session, const DevicePools& pools, const Tr
   DeviceVisibility oracle(session, pools, variant, map.tree.points, static_cast<float>(variant.step_delta / side));
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
+  options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
   options.seed = seed;
   const DeviceInfo& device = session.info();
@@ -36,7 +37,7 @@ RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, 
   }
   FmmOptions options;
   options.grid.order = static_cast<unsigned>(settings.order);
-  DeviceFmm exchange(session, map.tree, map.vmap.links, options);
+  DeviceFmm exchange(session, map.tree, map.vmap.links, options, map.vmap.point_shares);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
   RadiosityField field;

@@ -119,7 +119,8 @@ struct LightSettings {
 struct RadiositySettings {
   std::string method = "fmm";
   int order = 3;
-  int vmap_samples = 8;
+  int vmap_samples = 8;  ///< segments a pair of clusters
+  int point_samples = 1; ///< segments from a point to a cluster partly hidden from it; 0: none of its own
   double epsilon = 3e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
   std::string direct_light = "shadow_rays";

@@ -8,7 +8,7 @@ typedef struct Receivers {
 } Receivers;
 
 /* A cluster as one flux vector a colour, at its centroid. */
-static inline void receive_mid(Receivers* r, const __global FmmFlux* source, float share) {
+static inline void receive_mid(Receivers* r, const __global FmmFlux* source, fmm_lanes share) {
   const fmm_lanes dx = source->centre[0] - r->x, dy = source->centre[1] - r->y, dz = source->centre[2] - r->z;
   const fmm_lanes inverse = 1.0f / (dx * dx + dy * dy + dz * dz);
   const fmm_lanes facing = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
@@ -44,9 +44,9 @@ static inline fmm_lanes close_exchange(Receivers* r, fmm_lanes dx, fmm_lanes dy,
 }
 
 /* The points of a cluster. points: x, y, z, nx, ny, nz, area, each `stride` apart; flux: B A [W] a colour. */
-static inline void receive_near(Receivers* r, const __global FmmCluster* source, float share,
+static inline void receive_near(Receivers* r, const __global FmmCluster* source, fmm_lanes share,
                                 const __global float* points, uint stride, const __global float* flux) {
-  const float scale = share * INVERSE_PI;
+  const fmm_lanes scale = share * INVERSE_PI;
   for (uint j = source->first_point; j < source->first_point + source->count; ++j) {
     const __global float* p = points + j;
     const fmm_lanes dx = p[0] - r->x, dy = p[stride] - r->y, dz = p[2u * stride] - r->z;
@@ -67,16 +67,26 @@ static inline void receive_near(Receivers* r, const __global FmmCluster* source,
   }
 }
 
+/* What the receivers see of a source: all the same, or each its own share. `block`: of the receivers, counted from the
+ * first point of the receiving cluster. */
+static inline fmm_lanes visible_share(float share, uint own_share, const __global uchar* point_shares, uint block) {
+  if (own_share == NO_POINT_SHARES)
+    return share;
+  return convert_float8(vload8(0, point_shares + own_share + block)) * (1.0f / 255.0f);
+}
+
 /* irradiance[colour * stride + i] += mid and near rows of the leaf and of all clusters above it, for a block of its points.
- * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (leaf, first point, points, -). Rows as in m2l. Written
+ * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (leaf, first point, points, -). Rows as in m2l; own_share: of each entry, NO_POINT_SHARES or
+ * where its receivers' shares begin in point_shares. Written
  * by nobody else; l2p must be done. */
 __kernel void receive_points(const __global uint4* jobs, uint first_job, uint count,
                              const __global FmmCluster* clusters, const __global float* points, uint stride,
                              const __global float* flux, const __global FmmFlux* fluxes,
                              const __global uint* mid_begin, const __global uint* mid_source,
-                             const __global float* mid_share, const __global uint* near_begin,
-                             const __global uint* near_source, const __global float* near_share,
-                             __global float* irradiance) {
+                             const __global float* mid_share, const __global uint* mid_own_share,
+                             const __global uint* near_begin, const __global uint* near_source,
+                             const __global float* near_share, const __global uint* near_own_share,
+                             const __global uchar* point_shares, __global float* irradiance) {
   const uint id = get_global_id(0);
   if (id >= count)
     return;
@@ -87,10 +97,13 @@ __kernel void receive_points(const __global uint4* jobs, uint first_job, uint co
   r.nx = load_fmm(p + 3u * stride), r.ny = load_fmm(p + 4u * stride), r.nz = load_fmm(p + 5u * stride);
   r.red = 0.0f, r.green = 0.0f, r.blue = 0.0f;
   for (uint k = job.x;; k = clusters[k].parent) {
+    const uint block = job.y - clusters[k].first_point;
     for (uint entry = mid_begin[k]; entry < mid_begin[k + 1u]; ++entry)
-      receive_mid(&r, fluxes + mid_source[entry], mid_share[entry]);
+      receive_mid(&r, fluxes + mid_source[entry],
+                  visible_share(mid_share[entry], mid_own_share[entry], point_shares, block));
     for (uint entry = near_begin[k]; entry < near_begin[k + 1u]; ++entry)
-      receive_near(&r, clusters + near_source[entry], near_share[entry], points, stride, flux);
+      receive_near(&r, clusters + near_source[entry],
+                   visible_share(near_share[entry], near_own_share[entry], point_shares, block), points, stride, flux);
     if (k == 0u)
       break;
   }

@@ -30,7 +30,7 @@ TEST_CASE("unit charges through the lists: every point reads all points") {
     for (const double direct_below : {0.0, 1.5, 1e9}) {
       const ClusterTree tree = build_clusters(splats, {});
       const auto links = links_without_visibility(tree);
-      const auto lists = make_interaction_lists(tree, links, make_grids(tree, {}), {direct_below});
+      const auto lists = make_interaction_lists(tree, links, 0, make_grids(tree, {}), {direct_below});
       const auto read = count_sources(tree, lists);
       CHECK(std::count(read.begin(), read.end(), splats.size()) == static_cast<long>(splats.size()));
       if (direct_below == 1e9) CHECK(lists.far.source.empty());
@@ -48,7 +48,7 @@ TEST_CASE("unit charges through the lists: links that are missing, mid or betwee
     link.visible = 0.25f;
     kept.push_back(link);
   }
-  const auto lists = make_interaction_lists(tree, kept, make_grids(tree, {}), {});
+  const auto lists = make_interaction_lists(tree, kept, 0, make_grids(tree, {}), {});
   CHECK_FALSE(lists.mid.source.empty());
   CHECK(count_sources(tree, lists) == counted_by_hand(tree, kept));
 }
@@ -60,7 +60,7 @@ TEST_CASE("a far link between splats that touch goes as point pairs") {
   ClusterOptions options;
   options.leaf_capacity = 1;
   const ClusterTree tree = build_clusters(splats, options);
-  const auto lists = make_interaction_lists(tree, links_without_visibility(tree), make_grids(tree, {}), {0.0});
+  const auto lists = make_interaction_lists(tree, links_without_visibility(tree), 0, make_grids(tree, {}), {0.0});
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     for (std::uint32_t e = lists.far.begin[k]; e < lists.far.begin[k + 1]; ++e)
       CHECK(std::abs(tree.nodes[k].centre[0] - tree.nodes[lists.far.source[e]].centre[0]) > 0.1f);
@@ -71,12 +71,13 @@ TEST_CASE("links that cannot be are refused") {
   const Grids grids = make_grids(tree, {});
   const auto make = [&](const Link& link) {
     const std::vector<Link> links{link};
-    return make_interaction_lists(tree, links, grids, {});
+    return make_interaction_lists(tree, links, 16, grids, {});
   };
   const auto size = static_cast<std::uint32_t>(tree.nodes.size());
   CHECK_THROWS_WITH(make({0, size, 1.0f, LinkKind::far}), Catch::Contains("no such cluster"));
   CHECK_THROWS_WITH(make({0, 0, 1.0f, LinkKind::near_}), Catch::Contains("only a leaf"));
   CHECK_THROWS_WITH(make({1, 2, 0.0f, LinkKind::far}), Catch::Contains("share"));
   CHECK_THROWS_WITH(make({1, 2, NAN, LinkKind::far}), Catch::Contains("share"));
+  CHECK_THROWS_WITH(make({1, 2, 0.5f, LinkKind::far, 15}), Catch::Contains("shares of its points"));
   CHECK_THROWS_AS(make_grids(tree, {7, true}), std::invalid_argument);
 }

@@ -52,12 +52,12 @@ const Kept& kept() {
 }
 
 bool same(const VMap& a, const VMap& b) {
-  if (a.links.size() != b.links.size() || a.statistics.rays != b.statistics.rays ||
+  if (a.links.size() != b.links.size() || a.statistics.rays != b.statistics.rays || a.point_shares != b.point_shares ||
       a.statistics.pairs_tested != b.statistics.pairs_tested || a.statistics.near_ != b.statistics.near_)
     return false;
   for (std::size_t i = 0; i < a.links.size(); ++i)
     if (a.links[i].a != b.links[i].a || a.links[i].b != b.links[i].b || a.links[i].visible != b.links[i].visible ||
-        a.links[i].kind != b.links[i].kind)
+        a.links[i].kind != b.links[i].kind || a.links[i].point_shares != b.links[i].point_shares)
       return false;
   return true;
 }
@@ -182,6 +182,10 @@ TEST_CASE("links that the tree cannot have are not used, however well the file i
   }
   SECTION("of no kind") {
     map.links = {{1, 2, 1.0f, static_cast<LinkKind>(9)}};
+  }
+  SECTION("whose points' shares are not in the file") {
+    map.links = {{1, 2, 0.5f, LinkKind::near_, 1}};
+    map.point_shares.resize(k.tree.nodes[1].count + k.tree.nodes[2].count);
   }
   store_vmap(k.key, map);
   CHECK_FALSE(load_vmap(k.key, k.tree).map);
