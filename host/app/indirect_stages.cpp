@@ -39,8 +39,8 @@ void require_known_radiosity(const Scene& scene) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ExitCode::input, scene.radiosity.place->text() + ": [radiosity] " + what);
   };
-  if (scene.radiosity.method != "fmm")
-    refuse("method = \"" + scene.radiosity.method + "\" is not in this version; it has \"fmm\"");
+  if (scene.radiosity.method != "fmm" && scene.radiosity.method != "direct")
+    refuse("method = \"" + scene.radiosity.method + "\" is not in this version; it has \"fmm\" and \"direct\"");
   if (scene.radiosity.direct_light != "shadow_rays")
     refuse("direct_light = \"" + scene.radiosity.direct_light + "\" is not in this version; it has \"shadow_rays\"");
 }
@@ -57,23 +57,32 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     stages.skip("fmm", reason);
     return light;
   }
-  stages.start("vmap");
-  const RadiosityMap map =
-      map_visibility(session, pools, variant, points, scene.radiosity, scene.render.seed, frame.side);
-  light.links = map.vmap.statistics;
-  if (map.kept) spdlog::info("V-map: kept from an earlier run");
-  stages.finish(map.vmap.links.size(), "links");
+  const bool directly = scene.radiosity.method == "direct";
+  RadiosityMap map;
+  if (directly) {
+    stages.skip("vmap", "radiosity.method = \"direct\" traces a ray for every pair of points");
+  } else {
+    stages.start("vmap");
+    map = map_visibility(session, pools, variant, points, scene.radiosity, scene.render.seed, frame.side);
+    light.links = map.vmap.statistics;
+    if (map.kept) spdlog::info("V-map: kept from an earlier run");
+    stages.finish(map.vmap.links.size(), "links");
+  }
   stages.start("fmm");
   const Buffer<float> direct = direct_irradiance_of_points(session, pools, variant, lighting, frame.side, points.size,
                                                            samples_for(lighting), true, stop);
   if (stop()) throw Error(ExitCode::interrupted, "interrupted before the radiosity was solved; nothing was written");
+  const std::vector<float> received = session.download(direct, 3 * points.size);
   RadiosityField field =
-      solve_radiosity_field(session, map, session.download(direct, 3 * points.size), scene.radiosity);
+      directly ? solve_radiosity_directly(session, pools, variant, points, received, scene.radiosity, frame.side)
+               : solve_radiosity_field(session, map, received, scene.radiosity);
+  light.rays = field.rays;
   light.irradiance = upload_field(session, field.irradiance);
   light.solution = std::move(field.solution);
   stages.finish(points.size, "points");
-  spdlog::info("radiosity: {} links, {} applies of the operator, residual {:.2g}", map.vmap.links.size(),
-               light.solution.applies, light.solution.residual);
+  spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}",
+               directly ? "a ray a pair" : std::to_string(map.vmap.links.size()) + " links", light.solution.applies,
+               light.solution.residual);
   if (const std::string complaint = complaint_of(light.solution); !complaint.empty())
     spdlog::warn("radiosity: {}", complaint);
   return light;

@@ -13,11 +13,12 @@ struct IndirectLight {
   std::optional<Buffer<cl_float4>> irradiance; ///< of each point of the pool, from surfaces; absent: no such light
   LinkStatistics links;
   Solution solution;
+  std::uint64_t rays = 0; ///< that decided which points see each other
 };
 
-/// Runs `vmap` and `fmm` where the scene asks for radiosity ([radiosity]) and has light, and says of each stage that
-/// does not run why. `by_paths`: a path tracer makes the picture, which needs neither. Throws Error(input) for what
-/// this version does not have, Error(interrupted) when `stop` says so.
+/// Runs `vmap` and `fmm` (by the direct method `fmm` alone) where the scene asks for radiosity ([radiosity]) and has
+/// light, and says of each stage that does not run why. `by_paths`: a path tracer makes the picture, which needs
+/// neither. Throws Error(input) for what this version does not have, Error(interrupted) when `stop` says so.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                   const Scene& scene, const Frame& frame, const DeviceLighting& lighting,
                                   View<Splat> points, bool by_paths, StageLog& stages,

@@ -1,7 +1,9 @@
 #include "host/passes/radiosity.h"
+#include "host/passes/direct.h"
 #include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
 #include "host/passes/vmap_cache.h"
+#include <numeric>
 #include <stdexcept>
 
 namespace pointgi {
@@ -22,22 +24,27 @@ RadiosityMap map_visibility(Session& session, const DevicePools& pools, const Tr
   return map;
 }
 
-RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
-                                     const RadiositySettings& settings) {
-  const std::size_t points = map.tree.points.size();
+namespace {
+
+/// The points that exchange light, and where each stands in the pool.
+struct ExchangedPoints {
+  View<Splat> points;
+  View<std::uint32_t> place;
+};
+
+RadiosityField solve_field(RadiosityOperator& exchange, const ExchangedPoints& exchanged, View<float> direct,
+                           const RadiositySettings& settings) {
+  const std::size_t points = exchanged.points.size;
   if (direct.size != 3 * points) throw std::invalid_argument("radiosity: three direct irradiances a point");
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
   for (std::size_t k = 0; k < points; ++k) {
-    const Splat& splat = map.tree.points[k];
+    const Splat& splat = exchanged.points[k];
     area[k] = splat.area;
     for (std::size_t c = 0; c < 3; ++c) {
       albedo[3 * k + c] = splat.colour[c];
-      emission[3 * k + c] = splat.colour[c] * direct[3 * map.tree.order[k] + c];
+      emission[3 * k + c] = splat.colour[c] * direct[3 * exchanged.place[k] + c];
     }
   }
-  FmmOptions options;
-  options.grid.order = static_cast<unsigned>(settings.order);
-  DeviceFmm exchange(session, map.tree, map.vmap.links, options, map.vmap.point_shares);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
   RadiosityField field;
@@ -47,7 +54,32 @@ RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, 
   field.irradiance.resize(3 * points);
   for (std::size_t k = 0; k < points; ++k)
     for (std::size_t c = 0; c < 3; ++c)
-      field.irradiance[3 * map.tree.order[k] + c] = static_cast<float>(gathered[3 * k + c]);
+      field.irradiance[3 * exchanged.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
+  return field;
+}
+
+} // namespace
+
+RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
+                                     const RadiositySettings& settings) {
+  FmmOptions options;
+  options.grid.order = static_cast<unsigned>(settings.order);
+  DeviceFmm exchange(session, map.tree, map.vmap.links, options, map.vmap.point_shares);
+  RadiosityField field = solve_field(exchange, {map.tree.points, map.tree.order}, direct, settings);
+  field.rays = map.vmap.statistics.rays;
+  return field;
+}
+
+RadiosityField solve_radiosity_directly(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                                        View<Splat> points, View<float> direct, const RadiositySettings& settings,
+                                        double side) {
+  DirectOptions options;
+  options.step_delta = static_cast<float>(variant.step_delta / side);
+  DeviceDirect exchange(session, pools, variant, points, options);
+  std::vector<std::uint32_t> place(points.size); // the pool's order keeps close points together
+  std::iota(place.begin(), place.end(), 0u);
+  RadiosityField field = solve_field(exchange, {points, place}, direct, settings);
+  field.rays = exchange.rays();
   return field;
 }
 

@@ -21,13 +21,20 @@ RadiosityMap map_visibility(Session& session, const DevicePools& pools, const Tr
 /// The solution, per point of the pool.
 struct RadiosityField {
   std::vector<float>
-      irradiance;    ///< [points x 3, W/m² divided by the lighting's scale]: from surfaces to surfaces, LDD+
-  Solution solution; ///< radiosity in the tree's order, residual, sweeps
+      irradiance;         ///< [points x 3, W/m² divided by the lighting's scale]: from surfaces to surfaces, LDD+
+  Solution solution;      ///< radiosity in the tree's order (directly: the pool's), residual, sweeps
+  std::uint64_t rays = 0; ///< that decided who sees whom, now or in an earlier run
 };
 
 /// `direct` [points x 3]: what the lights give each point (point_irradiance.h), same unit. Solves B = rho (H_direct +
 /// H(B)) to settings.tolerance and gathers H(B) once more. Throws std::invalid_argument on sizes that differ.
 RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
                                      const RadiositySettings& settings);
+
+/// The same by the direct method: a ray a pair of `points`, all points of the pool, no V-map. Throws Error(memory) for
+/// more points than the device can keep a bit a pair of (host/passes/direct.h).
+RadiosityField solve_radiosity_directly(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                                        View<Splat> points, View<float> direct, const RadiositySettings& settings,
+                                        double side);
 
 } // namespace pointgi
