@@ -2,12 +2,55 @@
 #include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
 #include "host/passes/vmap_cache.h"
+#include <cstdio>
 #include <stdexcept>
 
 namespace pointgi {
 
+namespace {
+
+/// Passes questions on and reports how many were answered.
+class ReportedVisibility : public VisibilityOracle {
+public:
+  ReportedVisibility(VisibilityOracle& oracle, const WorkReport& report) : oracle_(oracle), report_(report) {}
+
+  std::vector<std::uint8_t> blocked(View<Segment> segments) override {
+    auto answers = oracle_.blocked(segments);
+    rays_ += segments.size;
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f million rays", 1e-6 * static_cast<double>(rays_));
+    report_(text);
+    return answers;
+  }
+
+private:
+  VisibilityOracle& oracle_;
+  const WorkReport& report_;
+  std::uint64_t rays_ = 0;
+};
+
+/// Passes applies on and reports how many were made.
+class ReportedExchange : public RadiosityOperator {
+public:
+  ReportedExchange(RadiosityOperator& exchange, const WorkReport& report) : exchange_(exchange), report_(report) {}
+
+  std::size_t points() const override { return exchange_.points(); }
+  void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override {
+    exchange_.apply(radiosity, judge, irradiance);
+    report_(std::to_string(++applies_) + " applies of the operator");
+  }
+
+private:
+  RadiosityOperator& exchange_;
+  const WorkReport& report_;
+  unsigned applies_ = 0;
+};
+
+} // namespace
+
 RadiosityMap map_visibility(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                            View<Splat> points, const RadiositySettings& settings, unsigned seed, double side) {
+                            View<Splat> points, const RadiositySettings& settings, unsigned seed, double side,
+                            const WorkReport& report) {
   RadiosityMap map;
   map.tree = build_clusters(points, ClusterOptions{});
   DeviceVisibility oracle(session, pools, variant, map.tree.points, static_cast<float>(variant.step_delta / side));
@@ -16,13 +59,14 @@ RadiosityMap map_visibility(Session& session, const DevicePools& pools, const Tr
   options.epsilon = static_cast<float>(settings.epsilon);
   options.seed = seed;
   const DeviceInfo& device = session.info();
-  map.vmap = kept_or_made_links(map.tree, points, oracle, options,
+  ReportedVisibility reported(oracle, report);
+  map.vmap = kept_or_made_links(map.tree, points, reported, options,
                                 device.name + ", " + device.driver + ", " + name_of(variant), &map.kept);
   return map;
 }
 
 RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
-                                     const RadiositySettings& settings) {
+                                     const RadiositySettings& settings, const WorkReport& report) {
   const std::size_t points = map.tree.points.size();
   if (direct.size != 3 * points) throw std::invalid_argument("radiosity: three direct irradiances a point");
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
@@ -36,7 +80,8 @@ RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, 
   }
   FmmOptions options;
   options.grid.order = static_cast<unsigned>(settings.order);
-  DeviceFmm exchange(session, map.tree, map.vmap.links, options);
+  DeviceFmm device(session, map.tree, map.vmap.links, options);
+  ReportedExchange exchange(device, report);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
   RadiosityField field;

@@ -83,7 +83,7 @@ TEST_CASE("a room with a block and a lamp: the picture of the path tracer, colou
   CHECK(together < 1e-4);
 }
 
-TEST_CASE("radiosity runs where it is asked for and something shines, is kept, and gives the same bits again") {
+TEST_CASE("radiosity runs where something shines, is kept, and gives the same bits again") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("room.toml", with_radiosity(lit_sphere(0.5, 0.15)));
   const std::string cache = "POINTGI_CACHE_DIR=" + folder.file("cache");
