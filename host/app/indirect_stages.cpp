@@ -87,8 +87,12 @@ namespace {
 RadiosityMap run_vmap(Session& session, const DevicePools& pools, const IndirectRequest& request, StageLog& stages) {
   stages.start("vmap");
   StageWatch watch(session, "vmap", request);
-  RadiosityMap map = map_visibility(session, pools, request.variant, request.points, request.scene.radiosity,
-                                    request.scene.render.seed, request.frame.side, watch.report());
+  std::vector<std::uint8_t> exchanges;
+  for (const MaterialSettings& material : request.scene.materials)
+    exchanges.push_back(exchanges_light(material) ? 1 : 0);
+  const ExchangeScene scene{pools,     request.variant,    request.points,
+                            exchanges, request.frame.side, request.scene.render.seed};
+  RadiosityMap map = map_visibility(session, scene, request.scene.radiosity, watch.report());
   if (map.kept) spdlog::info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
   return map;

@@ -48,34 +48,69 @@ private:
 
 } // namespace
 
-RadiosityMap map_visibility(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                            View<Splat> points, const RadiositySettings& settings, unsigned seed, double side,
+namespace {
+
+/// Places in the pool of the points that send and receive light.
+std::vector<std::uint32_t> exchanging_points(const ExchangeScene& scene) {
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t p = 0; p < scene.points.size; ++p)
+    if (scene.exchanges.size == 0 || scene.exchanges[static_cast<std::size_t>(scene.points[p].material)] != 0)
+      places.push_back(p);
+  return places;
+}
+
+/// The tree over them, and their places in its order.
+void cluster(const ExchangeScene& scene, RadiosityMap& map) {
+  const std::vector<std::uint32_t> places = exchanging_points(scene);
+  std::vector<Splat> points;
+  points.reserve(places.size());
+  for (const std::uint32_t p : places)
+    points.push_back(scene.points[p]);
+  map.tree = build_clusters(points, ClusterOptions{});
+  for (const std::uint32_t k : map.tree.order)
+    map.place.push_back(places[k]);
+}
+
+} // namespace
+
+RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                             const WorkReport& report) {
   RadiosityMap map;
-  map.tree = build_clusters(points, ClusterOptions{});
-  DeviceVisibility oracle(session, pools, variant, map.tree.points, static_cast<float>(variant.step_delta / side));
+  cluster(scene, map);
+  if (map.place.empty()) return map;
+  const TraversalVariant& variant = scene.variant;
+  DeviceVisibility oracle(session, scene.pools, variant, map.tree.points,
+                          static_cast<float>(variant.step_delta / scene.side));
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
-  options.seed = seed;
+  options.seed = scene.seed;
   const DeviceInfo& device = session.info();
   ReportedVisibility reported(oracle, report);
-  map.vmap = kept_or_made_links(map.tree, points, reported, options,
+  map.vmap = kept_or_made_links(map.tree, scene.points, reported, options,
                                 device.name + ", " + device.driver + ", " + name_of(variant), &map.kept);
   return map;
 }
 
 RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
                                      const RadiositySettings& settings, const WorkReport& report) {
-  const std::size_t points = map.tree.points.size();
-  if (direct.size != 3 * points) throw std::invalid_argument("radiosity: three direct irradiances a point");
+  const std::size_t points = map.place.size();
+  for (const std::uint32_t p : map.place)
+    if (3 * (static_cast<std::size_t>(p) + 1) > direct.size)
+      throw std::invalid_argument("radiosity: three direct irradiances a point of the pool");
+  RadiosityField field;
+  field.irradiance.resize(direct.size);
+  if (points == 0) {
+    field.solution.end = SolveEnd::converged;
+    return field;
+  }
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
   for (std::size_t k = 0; k < points; ++k) {
     const Splat& splat = map.tree.points[k];
     area[k] = splat.area;
     for (std::size_t c = 0; c < 3; ++c) {
       albedo[3 * k + c] = splat.colour[c];
-      emission[3 * k + c] = splat.colour[c] * direct[3 * map.tree.order[k] + c];
+      emission[3 * k + c] = splat.colour[c] * direct[3 * map.place[k] + c];
     }
   }
   FmmOptions options;
@@ -84,14 +119,12 @@ RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, 
   ReportedExchange exchange(device, report);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
-  RadiosityField field;
   field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
   std::vector<double> gathered;
   exchange.apply(field.solution.radiosity, Judge::now, gathered);
-  field.irradiance.resize(3 * points);
   for (std::size_t k = 0; k < points; ++k)
     for (std::size_t c = 0; c < 3; ++c)
-      field.irradiance[3 * map.tree.order[k] + c] = static_cast<float>(gathered[3 * k + c]);
+      field.irradiance[3 * map.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
   return field;
 }
 
