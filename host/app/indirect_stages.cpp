@@ -68,8 +68,9 @@ void require_known_radiosity(const Scene& scene) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ExitCode::input, scene.radiosity.place->text() + ": [radiosity] " + what);
   };
-  if (scene.radiosity.method != "fmm" && scene.radiosity.method != "none")
-    refuse("method = \"" + scene.radiosity.method + "\" is not in this version; it has \"fmm\" and \"none\"");
+  const std::string& method = scene.radiosity.method;
+  if (method != "fmm" && method != "none" && method != "direct")
+    refuse("method = \"" + method + "\" is not in this version; it has \"fmm\", \"none\" and \"direct\"");
   if (scene.radiosity.direct_light != "shadow_rays")
     refuse("direct_light = \"" + scene.radiosity.direct_light + "\" is not in this version; it has \"shadow_rays\"");
 }
@@ -84,30 +85,36 @@ std::string reason_against_radiosity(const IndirectRequest& request) {
 
 namespace {
 
-RadiosityMap run_vmap(Session& session, const DevicePools& pools, const IndirectRequest& request, StageLog& stages) {
+std::vector<std::uint8_t> exchanging_materials(const Scene& scene) {
+  std::vector<std::uint8_t> exchanges;
+  for (const MaterialSettings& material : scene.materials)
+    exchanges.push_back(exchanges_light(material) ? 1 : 0);
+  return exchanges;
+}
+
+RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
+                      StageLog& stages) {
   stages.start("vmap");
   StageWatch watch(session, "vmap", request);
-  std::vector<std::uint8_t> exchanges;
-  for (const MaterialSettings& material : request.scene.materials)
-    exchanges.push_back(exchanges_light(material) ? 1 : 0);
-  const ExchangeScene scene{pools,     request.variant,    request.points,
-                            exchanges, request.frame.side, request.scene.render.seed};
-  RadiosityMap map = map_visibility(session, scene, request.scene.radiosity, watch.report());
+  RadiosityMap map = map_visibility(session, exchange, request.scene.radiosity, watch.report());
   if (map.kept) spdlog::info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
   return map;
 }
 
-RadiosityField run_fmm(Session& session, const DevicePools& pools, const IndirectRequest& request,
-                       const RadiosityMap& map, StageLog& stages) {
+/// By the links of `map`, or where there is none by a ray a pair.
+RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
+                       const RadiosityMap* map, StageLog& stages) {
   stages.start("fmm");
   StageWatch watch(session, "fmm", request);
   const std::size_t points = request.points.size;
-  const Buffer<float> direct =
-      direct_irradiance_of_points(session, pools, request.variant, request.lighting, request.frame.side, points,
-                                  samples_for(request.lighting), true, [] { return false; });
-  RadiosityField field = solve_radiosity_field(session, map, session.download(direct, 3 * points),
-                                               request.scene.radiosity, watch.report());
+  const RadiositySettings& settings = request.scene.radiosity;
+  const std::vector<float> direct = session.download(
+      direct_irradiance_of_points(session, exchange.pools, request.variant, request.lighting, request.frame.side,
+                                  points, samples_for(request.lighting), true, [] { return false; }),
+      3 * points);
+  RadiosityField field = map != nullptr ? solve_radiosity_field(session, *map, direct, settings, watch.report())
+                                        : solve_radiosity_directly(session, exchange, direct, settings, watch.report());
   stages.finish(points, "points");
   return field;
 }
@@ -125,13 +132,23 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     stages.skip("fmm", reason);
     return light;
   }
-  const RadiosityMap map = run_vmap(session, pools, request, stages);
+  const std::vector<std::uint8_t> exchanges = exchanging_materials(request.scene);
+  const ExchangeScene exchange{pools,     request.variant,    request.points,
+                               exchanges, request.frame.side, request.scene.render.seed};
+  const bool directly = settings.method == "direct";
+  RadiosityMap map;
+  if (directly)
+    stages.skip("vmap", "radiosity.method = \"direct\" traces a ray for every pair of points");
+  else
+    map = run_vmap(session, exchange, request, stages);
   light.links = map.vmap.statistics;
-  RadiosityField field = run_fmm(session, pools, request, map, stages);
+  RadiosityField field = run_fmm(session, exchange, request, directly ? nullptr : &map, stages);
+  light.rays = field.rays;
   light.irradiance = upload_field(session, field.irradiance);
   light.solution = std::move(field.solution);
-  spdlog::info("radiosity: {} links, {} applies of the operator, residual {:.2g}", map.vmap.links.size(),
-               light.solution.applies, light.solution.residual);
+  spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}",
+               directly ? "a ray a pair" : std::to_string(map.vmap.links.size()) + " links", light.solution.applies,
+               light.solution.residual);
   if (const std::string complaint = complaint_of(light.solution); !complaint.empty())
     spdlog::warn("radiosity: {}", complaint);
   return light;

@@ -13,6 +13,7 @@ struct IndirectLight {
   std::optional<Buffer<cl_float4>> irradiance; ///< of each point of the pool, from surfaces; absent: no such light
   LinkStatistics links;
   Solution solution;
+  std::uint64_t rays = 0; ///< that decided which points see each other
 };
 
 /// The scene as the stages before have left it.

@@ -234,6 +234,7 @@ ExitCode run_render(const RenderOptions& options) {
     stats.session = &session;
     stats.links = indirect.links;
     stats.solution = indirect.solution;
+    stats.radiosity_rays = indirect.rays;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }

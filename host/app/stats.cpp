@@ -59,18 +59,22 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
       {"back_face_share", r.back_face_share()},
       {"interrupted", r.interrupted}};
   if (stats.solution.applies > 0) {
-    const LinkStatistics& l = stats.links;
-    out["vmap"] = {{"pairs_tested", l.pairs_tested},
-                   {"links", l.far + l.mid + l.near_},
-                   {"far", l.far},
-                   {"mid", l.mid},
-                   {"near", l.near_},
-                   {"rays", l.rays}};
-    out["radiosity"] = {{"method", stats.scene->radiosity.method},
-                        {"order", stats.scene->radiosity.order},
+    const RadiositySettings& settings = stats.scene->radiosity;
+    out["radiosity"] = {{"method", settings.method},
                         {"iterations", stats.solution.applies},
                         {"residual", stats.solution.residual},
+                        {"rays", stats.radiosity_rays},
                         {"converged", stats.solution.end == SolveEnd::converged}};
+    if (settings.method == "fmm") {
+      const LinkStatistics& l = stats.links;
+      out["radiosity"]["order"] = settings.order;
+      out["vmap"] = {{"pairs_tested", l.pairs_tested},
+                     {"links", l.far + l.mid + l.near_},
+                     {"far", l.far},
+                     {"mid", l.mid},
+                     {"near", l.near_},
+                     {"rays", l.rays}};
+    }
   }
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())

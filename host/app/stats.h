@@ -19,6 +19,7 @@ struct Stats {
   RenderTotals render;
   LinkStatistics links;
   Solution solution; ///< of radiosity; without applies where there was none
+  std::uint64_t radiosity_rays = 0;
   VariantChoice variant;
   double seconds = 0.0;
 };

@@ -2,6 +2,7 @@
 /// H(B) by the fast multipole method on the device (method.md section 4; kernels/fmm).
 #include "fmm/operators/fmm_operator.h"
 #include "host/cl/session.h"
+#include "host/passes/pace.h"
 
 namespace pointgi {
 
@@ -24,8 +25,8 @@ private:
   /// Work-items that run one after another in launches of about the same time.
   struct Jobs {
     Buffer<cl_uint4> items;
-    std::vector<double> cost;      ///< of the jobs before this one, in pairs; one more than there are jobs
-    double pairs_per_second = 2e7; ///< learnt from launches
+    std::vector<double> cost; ///< of the jobs before this one, in pairs; one more than there are jobs
+    Pace pace{2e7};           ///< pairs
   };
   struct Rows {
     Buffer<cl_uint> begin, source;

@@ -1,4 +1,5 @@
 #include "host/passes/radiosity.h"
+#include "host/passes/direct.h"
 #include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
 #include "host/passes/vmap_cache.h"
@@ -59,14 +60,18 @@ std::vector<std::uint32_t> exchanging_points(const ExchangeScene& scene) {
   return places;
 }
 
+std::vector<Splat> points_at(const ExchangeScene& scene, View<std::uint32_t> places) {
+  std::vector<Splat> points;
+  points.reserve(places.size);
+  for (const std::uint32_t p : places)
+    points.push_back(scene.points[p]);
+  return points;
+}
+
 /// The tree over them, and their places in its order.
 void cluster(const ExchangeScene& scene, RadiosityMap& map) {
   const std::vector<std::uint32_t> places = exchanging_points(scene);
-  std::vector<Splat> points;
-  points.reserve(places.size());
-  for (const std::uint32_t p : places)
-    points.push_back(scene.points[p]);
-  map.tree = build_clusters(points, ClusterOptions{});
+  map.tree = build_clusters(points_at(scene, places), ClusterOptions{});
   for (const std::uint32_t k : map.tree.order)
     map.place.push_back(places[k]);
 }
@@ -92,39 +97,80 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   return map;
 }
 
-RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
-                                     const RadiositySettings& settings, const WorkReport& report) {
-  const std::size_t points = map.place.size();
-  for (const std::uint32_t p : map.place)
+namespace {
+
+/// The points that exchange light, and where each stands in the pool.
+struct ExchangedPoints {
+  View<Splat> points;
+  View<std::uint32_t> place;
+};
+
+void check_sizes(View<std::uint32_t> place, View<float> direct) {
+  for (const std::uint32_t p : place)
     if (3 * (static_cast<std::size_t>(p) + 1) > direct.size)
       throw std::invalid_argument("radiosity: three direct irradiances a point of the pool");
-  RadiosityField field;
-  field.irradiance.resize(direct.size);
-  if (points == 0) {
-    field.solution.end = SolveEnd::converged;
-    return field;
-  }
+}
+
+RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exchanged, View<float> direct,
+                           const RadiositySettings& settings, const WorkReport& report) {
+  const std::size_t points = exchanged.points.size;
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
   for (std::size_t k = 0; k < points; ++k) {
-    const Splat& splat = map.tree.points[k];
+    const Splat& splat = exchanged.points[k];
     area[k] = splat.area;
     for (std::size_t c = 0; c < 3; ++c) {
       albedo[3 * k + c] = splat.colour[c];
-      emission[3 * k + c] = splat.colour[c] * direct[3 * map.place[k] + c];
+      emission[3 * k + c] = splat.colour[c] * direct[3 * exchanged.place[k] + c];
     }
   }
-  FmmOptions options;
-  options.grid.order = static_cast<unsigned>(settings.order);
-  DeviceFmm device(session, map.tree, map.vmap.links, options);
   ReportedExchange exchange(device, report);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
+  RadiosityField field;
   field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
   std::vector<double> gathered;
   exchange.apply(field.solution.radiosity, Judge::now, gathered);
+  field.irradiance.resize(direct.size);
   for (std::size_t k = 0; k < points; ++k)
     for (std::size_t c = 0; c < 3; ++c)
-      field.irradiance[3 * map.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
+      field.irradiance[3 * exchanged.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
+  return field;
+}
+
+/// Of a pool in which nothing exchanges light.
+RadiosityField dark_field(View<float> direct) {
+  RadiosityField field;
+  field.irradiance.resize(direct.size);
+  field.solution.end = SolveEnd::converged;
+  return field;
+}
+
+} // namespace
+
+RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
+                                     const RadiositySettings& settings, const WorkReport& report) {
+  check_sizes(map.place, direct);
+  if (map.place.empty()) return dark_field(direct);
+  FmmOptions options;
+  options.grid.order = static_cast<unsigned>(settings.order);
+  DeviceFmm exchange(session, map.tree, map.vmap.links, options);
+  RadiosityField field = solve_field(exchange, {map.tree.points, map.place}, direct, settings, report);
+  field.rays = map.vmap.statistics.rays;
+  return field;
+}
+
+RadiosityField solve_radiosity_directly(Session& session, const ExchangeScene& scene, View<float> direct,
+                                        const RadiositySettings& settings, const WorkReport& report) {
+  // The pool's order keeps close points together.
+  const std::vector<std::uint32_t> places = exchanging_points(scene);
+  check_sizes(places, direct);
+  if (places.empty()) return dark_field(direct);
+  const std::vector<Splat> points = points_at(scene, places);
+  DirectOptions options;
+  options.step_delta = static_cast<float>(scene.variant.step_delta / scene.side);
+  DeviceDirect exchange(session, scene.pools, scene.variant, points, options);
+  RadiosityField field = solve_field(exchange, {points, places}, direct, settings, report);
+  field.rays = exchange.rays();
   return field;
 }
 

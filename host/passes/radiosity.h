@@ -39,7 +39,8 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
 struct RadiosityField {
   std::vector<float> irradiance; ///< [points x 3, W/m² divided by the lighting's scale]: from surfaces to surfaces,
                                  ///< LDD+; 0 of points that do not exchange light
-  Solution solution;             ///< radiosity in the tree's order, residual, sweeps
+  Solution solution;             ///< radiosity of those that do in the tree's order (directly: the pool's), residual
+  std::uint64_t rays = 0;        ///< that decided who sees whom, now or in an earlier run
 };
 
 /// `direct` [points of the pool x 3]: what the lights give each (point_irradiance.h), same unit. Solves B = rho
@@ -47,5 +48,10 @@ struct RadiosityField {
 /// differ.
 RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
                                      const RadiositySettings& settings, const WorkReport& report);
+
+/// The same by the direct method: a ray a pair of points that exchange light, no V-map. Throws Error(memory) for more
+/// points than the device can keep a bit a pair of (host/passes/direct.h).
+RadiosityField solve_radiosity_directly(Session& session, const ExchangeScene& scene, View<float> direct,
+                                        const RadiositySettings& settings, const WorkReport& report);
 
 } // namespace pointgi

@@ -75,6 +75,10 @@ Program segments_program(const TraversalVariant& variant) {
   return program(variant, "visibility/segments.cl", "");
 }
 
+Program pairs_program(const TraversalVariant& variant) {
+  return program(variant, "visibility/pairs.cl", "");
+}
+
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
   return program(variant, "render/path.cl",
                  group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));

@@ -55,6 +55,8 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);
+/// Visibility of all pairs of points for the direct solver, pairs_visible.
+Program pairs_program(const TraversalVariant& variant);
 
 /// The picture by path tracing, path_pixels: a pixel a work-group of 8x4; never with fast math, for it is what others
 /// are measured by. `some_paths`: params.path_classes leaves some out.

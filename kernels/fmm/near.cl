@@ -1,11 +1,5 @@
 /* Mid and near rows of the links at the points: both clamps, times the visible share (method.md section 4). */
-#include "fmm/lanes.cl"
-
-/* A block of receiving points, and what they have got of each colour. */
-typedef struct Receivers {
-  fmm_lanes x, y, z, nx, ny, nz;
-  fmm_lanes red, green, blue;
-} Receivers;
+#include "fmm/exchange.cl"
 
 /* A cluster as one flux vector a colour, at its centroid. */
 static inline void receive_mid(Receivers* r, const __global FmmFlux* source, float share) {
@@ -20,51 +14,12 @@ static inline void receive_mid(Receivers* r, const __global FmmFlux* source, flo
   r->blue += scale * select((fmm_lanes)(0.0f), q[6] * dx + q[7] * dy + q[8] * dz, j[6] * dx + j[7] * dy + j[8] * dz < 0.0f);
 }
 
-/* One quarter of a near source's disc at r from the receivers: a b / (s2 (s2 + softening)), fmm/operators/point_pair.h. */
-static inline fmm_lanes quarter_exchange(Receivers* r, fmm_lanes dx, fmm_lanes dy, fmm_lanes dz, fmm_lanes b,
-                                         float disc2) {
-  const fmm_lanes s2 = max(dx * dx + dy * dy + dz * dz, 1e-30f);
-  const fmm_lanes a = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
-  const fmm_lanes fade = max(1.0f - s2 / (4.0f * disc2), 0.0f);
-  return (a / s2) * (b / (s2 + disc2 * fade * fade));
-}
-
-/* A / pi-th part of the exchange of receivers closer than FMM_CLOSE to a source with normal n: four quarters. */
-static inline fmm_lanes close_exchange(Receivers* r, fmm_lanes dx, fmm_lanes dy, fmm_lanes dz, fmm_lanes b, float3 n,
-                                       float area) {
-  const float disc2 = 0.25f * INVERSE_PI * area;
-  const float offset = sqrt(2.0f * disc2);
-  const float side = n.z < 0.0f ? -1.0f : 1.0f, p = -1.0f / (side + n.z), q = n.x * n.y * p;
-  const float3 u = offset * (float3)(1.0f + side * n.x * n.x * p, side * q, -side * n.x);
-  const float3 v = offset * (float3)(q, side + n.y * n.y * p, -n.y);
-  return 0.25f * (quarter_exchange(r, dx + u.x, dy + u.y, dz + u.z, b, disc2) +
-                  quarter_exchange(r, dx - u.x, dy - u.y, dz - u.z, b, disc2) +
-                  quarter_exchange(r, dx + v.x, dy + v.y, dz + v.z, b, disc2) +
-                  quarter_exchange(r, dx - v.x, dy - v.y, dz - v.z, b, disc2));
-}
-
-/* The points of a cluster. points: x, y, z, nx, ny, nz, area, each `stride` apart; flux: B A [W] a colour. */
+/* The points of a cluster, as receivers_at and receive_flux read them. */
 static inline void receive_near(Receivers* r, const __global FmmCluster* source, float share,
                                 const __global float* points, uint stride, const __global float* flux) {
   const float scale = share * INVERSE_PI;
-  for (uint j = source->first_point; j < source->first_point + source->count; ++j) {
-    const __global float* p = points + j;
-    const fmm_lanes dx = p[0] - r->x, dy = p[stride] - r->y, dz = p[2u * stride] - r->z;
-    const float3 n = (float3)(p[3u * stride], p[4u * stride], p[5u * stride]);
-    const float area = p[6u * stride];
-    const fmm_lanes b = max(-(n.x * dx + n.y * dy + n.z * dz), 0.0f);
-    const fmm_lanes a = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
-    const fmm_lanes r2 = max(dx * dx + dy * dy + dz * dz, 1e-30f);
-    const fmm_lanes inverse = 1.0f / r2;
-    fmm_lanes factor = (a * inverse) * (b * inverse);
-    const fmm_mask close = r2 < FMM_CLOSE * area;
-    if (fmm_any(close))
-      factor = select(factor, close_exchange(r, dx, dy, dz, b, n, area), close);
-    factor *= scale;
-    r->red += factor * flux[j];
-    r->green += factor * flux[stride + j];
-    r->blue += factor * flux[2u * stride + j];
-  }
+  for (uint j = source->first_point; j < source->first_point + source->count; ++j)
+    receive_flux(r, exchange_with_point(r, points + j, stride) * scale, flux, stride, j);
 }
 
 /* irradiance[colour * stride + i] += mid and near rows of the leaf and of all clusters above it, for a block of its points.
@@ -81,11 +36,7 @@ __kernel void receive_points(const __global uint4* jobs, uint first_job, uint co
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];
-  const __global float* p = points + job.y;
-  Receivers r;
-  r.x = load_fmm(p), r.y = load_fmm(p + stride), r.z = load_fmm(p + 2u * stride);
-  r.nx = load_fmm(p + 3u * stride), r.ny = load_fmm(p + 4u * stride), r.nz = load_fmm(p + 5u * stride);
-  r.red = 0.0f, r.green = 0.0f, r.blue = 0.0f;
+  Receivers r = receivers_at(points, stride, job.y);
   for (uint k = job.x;; k = clusters[k].parent) {
     for (uint entry = mid_begin[k]; entry < mid_begin[k + 1u]; ++entry)
       receive_mid(&r, fluxes + mid_source[entry], mid_share[entry]);

@@ -2,6 +2,7 @@
 #include "tests/support/render.h"
 #include "tests/support/run_program.h"
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -83,6 +84,34 @@ TEST_CASE("a room with a block and a lamp: the picture of the path tracer, colou
   CHECK(together < 1e-4);
 }
 
+TEST_CASE("radiosity.method = direct: no V-map, a ray a pair, the picture of fmm") {
+  const TemporaryFolder folder;
+  const std::string scene = with_radiosity(lit_sphere(0.5, 0.15)), stats = folder.file("stats.json");
+  const auto diffuse_by = [&](const char* method) {
+    return mean(render_text(scene,
+                            [&](RenderOptions& options) {
+                              options.overrides = {std::string("radiosity.method=") + method};
+                              options.stats_file = stats;
+                            }),
+                "Diffuse.G");
+  };
+  const auto read_stats = [&] { return nlohmann::json::parse(std::ifstream(stats)); };
+  const double by_fmm = diffuse_by("fmm");
+  CHECK(read_stats()["radiosity"]["rays"] == read_stats()["vmap"]["rays"]);
+  CHECK(diffuse_by("direct") == Approx(by_fmm).epsilon(0.01)); // what the V-map may lose
+  const auto found = read_stats();
+  CHECK(found["radiosity"]["method"] == "direct");
+  CHECK(found["radiosity"]["converged"] == true);
+  CHECK(found["radiosity"]["iterations"] > 3);
+  const double points = found["scene"]["points"], rays = found["radiosity"]["rays"];
+  CHECK(rays == Approx(points * (points - 1) / 2).epsilon(0.001)); // inside a sphere all face all
+  CHECK(found.count("vmap") == 0);
+  for (const auto& stage : found["stages"]) {
+    if (stage["name"] == "vmap") CHECK_THAT(std::string(stage["reason"]), Catch::Contains("a ray for every pair"));
+    if (stage["name"] == "fmm") CHECK(stage["ran"] == true);
+  }
+}
+
 TEST_CASE("radiosity runs where something shines, is kept, and gives the same bits again") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("room.toml", with_radiosity(lit_sphere(0.5, 0.15)));
@@ -102,4 +131,7 @@ TEST_CASE("radiosity runs where something shines, is kept, and gives the same bi
   const Run refused = run_program("render " + scene + " --set radiosity.direct_light=radiosity", cache);
   CHECK(refused.code == 3);
   CHECK_THAT(refused.err, Catch::Contains("direct_light") && Catch::Contains("not in this version"));
+  const Run unknown = run_program("render " + scene + " --set radiosity.method=progressive", cache);
+  CHECK(unknown.code == 3);
+  CHECK_THAT(unknown.err, Catch::Contains("not in this version; it has \"fmm\", \"none\" and \"direct\""));
 }
