@@ -16,13 +16,26 @@ struct IndirectLight {
   std::uint64_t rays = 0; ///< that decided which points see each other
 };
 
-/// Runs `vmap` and `fmm` (by the direct method `fmm` alone) where the scene asks for radiosity ([radiosity]) and has
-/// light, and says of each stage that does not run why. `by_paths`: a path tracer makes the picture, which needs
-/// neither. Throws Error(input) for what this version does not have, Error(interrupted) when `stop` says so.
-IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                                  const Scene& scene, const Frame& frame, const DeviceLighting& lighting,
-                                  View<Splat> points, bool by_paths, StageLog& stages,
-                                  const std::function<bool()>& stop);
+/// The scene as the stages before have left it.
+struct IndirectRequest {
+  const TraversalVariant& variant;
+  const Scene& scene;
+  const Frame& frame;
+  const DeviceLighting& lighting;
+  View<Splat> points;         ///< of the pool
+  bool by_paths = false;      ///< a path tracer makes the picture
+  bool quiet = false;         ///< no progress
+  std::function<bool()> stop; ///< asked before every launch
+};
+
+/// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws Error(input)
+/// for what this version does not have, Error(interrupted) when `stop` says so.
+IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                  StageLog& stages);
+
+/// Why vmap and fmm do not run, in a few words; empty when they do: the scene has light, and surfaces that send each
+/// other some of it.
+std::string reason_against_radiosity(const IndirectRequest& request);
 
 /// Refuses settings of [radiosity] that this version does not have, before the work. Throws Error(input).
 void require_known_radiosity(const Scene& scene);

@@ -211,8 +211,9 @@ ExitCode run_render(const RenderOptions& options) {
   const DeviceLighting lighting = device_lighting(scene, placed.frame, points_of(pools));
   const std::optional<LightPaths> paths = paths_of(options, scene);
   catch_interrupts();
-  const IndirectLight indirect = run_indirect_stages(session, on_device, variant, scene, placed.frame, lighting,
-                                                     points_of(pools), paths.has_value(), stages, interrupted);
+  const IndirectRequest wanted{variant,           scene,         placed.frame, lighting, points_of(pools),
+                               paths.has_value(), options.quiet, interrupted};
+  const IndirectLight indirect = run_indirect_stages(session, on_device, wanted, stages);
   stages.skip("photon", "no specular material");
   if (scene.caustics.place)
     spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());

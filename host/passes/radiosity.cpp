@@ -3,23 +3,93 @@
 #include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
 #include "host/passes/vmap_cache.h"
-#include <numeric>
+#include <cstdio>
 #include <stdexcept>
 
 namespace pointgi {
 
-RadiosityMap map_visibility(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                            View<Splat> points, const RadiositySettings& settings, unsigned seed, double side) {
+namespace {
+
+/// Passes questions on and reports how many were answered.
+class ReportedVisibility : public VisibilityOracle {
+public:
+  ReportedVisibility(VisibilityOracle& oracle, const WorkReport& report) : oracle_(oracle), report_(report) {}
+
+  std::vector<std::uint8_t> blocked(View<Segment> segments) override {
+    auto answers = oracle_.blocked(segments);
+    rays_ += segments.size;
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f million rays", 1e-6 * static_cast<double>(rays_));
+    report_(text);
+    return answers;
+  }
+
+private:
+  VisibilityOracle& oracle_;
+  const WorkReport& report_;
+  std::uint64_t rays_ = 0;
+};
+
+/// Passes applies on and reports how many were made.
+class ReportedExchange : public RadiosityOperator {
+public:
+  ReportedExchange(RadiosityOperator& exchange, const WorkReport& report) : exchange_(exchange), report_(report) {}
+
+  std::size_t points() const override { return exchange_.points(); }
+  void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override {
+    exchange_.apply(radiosity, judge, irradiance);
+    report_(std::to_string(++applies_) + " applies of the operator");
+  }
+
+private:
+  RadiosityOperator& exchange_;
+  const WorkReport& report_;
+  unsigned applies_ = 0;
+};
+
+/// Places in the pool of the points that send and receive light.
+std::vector<std::uint32_t> exchanging_points(const ExchangeScene& scene) {
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t p = 0; p < scene.points.size; ++p)
+    if (scene.exchanges.size == 0 || scene.exchanges[static_cast<std::size_t>(scene.points[p].material)] != 0)
+      places.push_back(p);
+  return places;
+}
+
+std::vector<Splat> points_at(const ExchangeScene& scene, View<std::uint32_t> places) {
+  std::vector<Splat> points;
+  points.reserve(places.size);
+  for (const std::uint32_t p : places)
+    points.push_back(scene.points[p]);
+  return points;
+}
+
+/// The tree over them, and their places in its order.
+void cluster(const ExchangeScene& scene, RadiosityMap& map) {
+  const std::vector<std::uint32_t> places = exchanging_points(scene);
+  map.tree = build_clusters(points_at(scene, places), ClusterOptions{});
+  for (const std::uint32_t k : map.tree.order)
+    map.place.push_back(places[k]);
+}
+
+} // namespace
+
+RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                            const WorkReport& report) {
   RadiosityMap map;
-  map.tree = build_clusters(points, ClusterOptions{});
-  DeviceVisibility oracle(session, pools, variant, map.tree.points, static_cast<float>(variant.step_delta / side));
+  cluster(scene, map);
+  if (map.place.empty()) return map;
+  const TraversalVariant& variant = scene.variant;
+  DeviceVisibility oracle(session, scene.pools, variant, map.tree.points,
+                          static_cast<float>(variant.step_delta / scene.side));
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
-  options.seed = seed;
+  options.seed = scene.seed;
   const DeviceInfo& device = session.info();
-  map.vmap = kept_or_made_links(map.tree, points, oracle, options,
+  ReportedVisibility reported(oracle, report);
+  map.vmap = kept_or_made_links(map.tree, scene.points, reported, options,
                                 device.name + ", " + device.driver + ", " + name_of(variant), &map.kept);
   return map;
 }
@@ -32,10 +102,15 @@ struct ExchangedPoints {
   View<std::uint32_t> place;
 };
 
-RadiosityField solve_field(RadiosityOperator& exchange, const ExchangedPoints& exchanged, View<float> direct,
-                           const RadiositySettings& settings) {
+void check_sizes(View<std::uint32_t> place, View<float> direct) {
+  for (const std::uint32_t p : place)
+    if (3 * (static_cast<std::size_t>(p) + 1) > direct.size)
+      throw std::invalid_argument("radiosity: three direct irradiances a point of the pool");
+}
+
+RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exchanged, View<float> direct,
+                           const RadiositySettings& settings, const WorkReport& report) {
   const std::size_t points = exchanged.points.size;
-  if (direct.size != 3 * points) throw std::invalid_argument("radiosity: three direct irradiances a point");
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
   for (std::size_t k = 0; k < points; ++k) {
     const Splat& splat = exchanged.points[k];
@@ -45,40 +120,53 @@ RadiosityField solve_field(RadiosityOperator& exchange, const ExchangedPoints& e
       emission[3 * k + c] = splat.colour[c] * direct[3 * exchanged.place[k] + c];
     }
   }
+  ReportedExchange exchange(device, report);
   SolveOptions solve;
   solve.tolerance = settings.tolerance;
   RadiosityField field;
   field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
   std::vector<double> gathered;
   exchange.apply(field.solution.radiosity, Judge::now, gathered);
-  field.irradiance.resize(3 * points);
+  field.irradiance.resize(direct.size);
   for (std::size_t k = 0; k < points; ++k)
     for (std::size_t c = 0; c < 3; ++c)
       field.irradiance[3 * exchanged.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
   return field;
 }
 
+/// Of a pool in which nothing exchanges light.
+RadiosityField dark_field(View<float> direct) {
+  RadiosityField field;
+  field.irradiance.resize(direct.size);
+  field.solution.end = SolveEnd::converged;
+  return field;
+}
+
 } // namespace
 
 RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
-                                     const RadiositySettings& settings) {
+                                     const RadiositySettings& settings, const WorkReport& report) {
+  check_sizes(map.place, direct);
+  if (map.place.empty()) return dark_field(direct);
   FmmOptions options;
   options.grid.order = static_cast<unsigned>(settings.order);
   DeviceFmm exchange(session, map.tree, map.vmap.links, options, map.vmap.point_shares);
-  RadiosityField field = solve_field(exchange, {map.tree.points, map.tree.order}, direct, settings);
+  RadiosityField field = solve_field(exchange, {map.tree.points, map.place}, direct, settings, report);
   field.rays = map.vmap.statistics.rays;
   return field;
 }
 
-RadiosityField solve_radiosity_directly(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                                        View<Splat> points, View<float> direct, const RadiositySettings& settings,
-                                        double side) {
+RadiosityField solve_radiosity_directly(Session& session, const ExchangeScene& scene, View<float> direct,
+                                        const RadiositySettings& settings, const WorkReport& report) {
+  // The pool's order keeps close points together.
+  const std::vector<std::uint32_t> places = exchanging_points(scene);
+  check_sizes(places, direct);
+  if (places.empty()) return dark_field(direct);
+  const std::vector<Splat> points = points_at(scene, places);
   DirectOptions options;
-  options.step_delta = static_cast<float>(variant.step_delta / side);
-  DeviceDirect exchange(session, pools, variant, points, options);
-  std::vector<std::uint32_t> place(points.size); // the pool's order keeps close points together
-  std::iota(place.begin(), place.end(), 0u);
-  RadiosityField field = solve_field(exchange, {points, place}, direct, settings);
+  options.step_delta = static_cast<float>(scene.variant.step_delta / scene.side);
+  DeviceDirect exchange(session, scene.pools, scene.variant, points, options);
+  RadiosityField field = solve_field(exchange, {points, places}, direct, settings, report);
   field.rays = exchange.rays();
   return field;
 }

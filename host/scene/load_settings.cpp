@@ -76,7 +76,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (!table) return;
   table->allow_only({"method", "order", "vmap_samples", "point_samples", "epsilon", "tolerance", "direct_light"});
   radiosity.place = table->place();
-  if (const auto method = table->choice("method", {"fmm", "direct", "progressive", "mls", "voxel_cone"}))
+  if (const auto method = table->choice("method", {"fmm", "none", "direct", "progressive", "mls", "voxel_cone"}))
     radiosity.method = *method;
   if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
   if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))

@@ -59,6 +59,9 @@ struct MaterialSettings {
   SourcePlace place;
 };
 
+/// Whether its splats send and receive diffuse light. Specular ones do not; they block it (method.md §1).
+bool exchanges_light(const MaterialSettings& material);
+
 struct CloudSettings {
   std::string file;     ///< absolute, or relative to the working directory: already joined with the scene's folder
   std::string material; ///< name of a material; checked to exist
@@ -117,7 +120,7 @@ struct LightSettings {
 };
 
 struct RadiositySettings {
-  std::string method = "fmm";
+  std::string method = "fmm"; ///< "none": direct light only
   int order = 3;
   int vmap_samples = 8;  ///< segments a pair of clusters
   int point_samples = 1; ///< segments from a point to a cluster partly hidden from it; 0: none of its own

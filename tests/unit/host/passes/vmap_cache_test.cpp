@@ -1,7 +1,7 @@
 #include "host/passes/vmap_cache.h"
 #include "octree/ref/segment_blocked.h"
+#include "tests/support/cache_folder.h"
 #include "tests/support/rooms.h"
-#include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -10,25 +10,6 @@ using namespace pointgi;
 using namespace pointgi::test;
 
 namespace {
-
-/// POINTGI_CACHE_DIR is this folder for a while.
-class CacheFolder {
-public:
-  CacheFolder() {
-    if (const char* old = std::getenv("POINTGI_CACHE_DIR")) old_ = old;
-    setenv("POINTGI_CACHE_DIR", folder_.file("cache").c_str(), 1);
-  }
-  ~CacheFolder() {
-    if (old_)
-      setenv("POINTGI_CACHE_DIR", old_->c_str(), 1);
-    else
-      unsetenv("POINTGI_CACHE_DIR");
-  }
-
-private:
-  TemporaryFolder folder_;
-  std::optional<std::string> old_;
-};
 
 struct Kept {
   std::vector<Splat> splats = room_splats(400);
