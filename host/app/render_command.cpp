@@ -218,7 +218,12 @@ ExitCode run_render(const RenderOptions& options) {
   if (scene.caustics.place)
     spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
   RenderRequest request{window, lighting, placed.frame, ids, variant, paths};
-  request.irradiance = indirect.irradiance ? &*indirect.irradiance : nullptr;
+  Buffer<cl_float4> irradiance;
+  if (!indirect.from_surfaces.empty()) {
+    irradiance = upload_irradiance(session, indirect, scene);
+    request.irradiance = &irradiance;
+    request.shadow_rays = !direct_light_by_radiosity(scene);
+  }
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
                        film_channels(request.has_indirect()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
@@ -232,9 +237,7 @@ ExitCode run_render(const RenderOptions& options) {
     stats.variant = choice;
     stats.scene = &scene;
     stats.session = &session;
-    stats.links = indirect.links;
-    stats.solution = indirect.solution;
-    stats.radiosity_rays = indirect.rays;
+    stats.indirect = &indirect;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }

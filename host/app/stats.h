@@ -1,11 +1,10 @@
 #pragma once
-#include "fmm/solve/solve.h"
+#include "host/app/indirect_stages.h"
 #include "host/app/stages.h"
 #include "host/cl/session.h"
 #include "host/passes/render.h"
 #include "host/passes/tuned.h"
 #include "octree/pack/pools.h"
-#include "octree/vmap/make_links.h"
 #include <nlohmann/json.hpp>
 
 namespace pointgi {
@@ -17,9 +16,7 @@ struct Stats {
   OctreeSummary octree;
   const Session* session = nullptr;
   RenderTotals render;
-  LinkStatistics links;
-  Solution solution; ///< of radiosity; without applies where there was none
-  std::uint64_t radiosity_rays = 0;
+  const IndirectLight* indirect = nullptr; ///< null, or without applies: there was none
   VariantChoice variant;
   double seconds = 0.0;
 };

@@ -125,8 +125,9 @@ struct RadiositySettings {
   int vmap_samples = 8;
   double epsilon = 3e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
-  std::string direct_light = "shadow_rays";
-  std::optional<SourcePlace> place; ///< set when the file has the section
+  std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
+  std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
+  std::optional<SourcePlace> place;         ///< set when the file has the section
 };
 struct CausticSettings {
   long long photons = 400000;
