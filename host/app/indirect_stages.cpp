@@ -55,7 +55,8 @@ private:
   std::string done_ = "at work";
 };
 
-/// Radiosity that each point shines with: pi L_e.
+} // namespace
+
 std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points) {
   std::vector<float> emitted(3 * points.size);
   for (std::size_t p = 0; p < points.size; ++p)
@@ -63,8 +64,6 @@ std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat>
       emitted[3 * p + c] = 3.14159265f * lighting.materials[static_cast<std::size_t>(points[p].material)].emission[c];
   return emitted;
 }
-
-} // namespace
 
 bool direct_light_by_radiosity(const Scene& scene) {
   return scene.radiosity.direct_light == "radiosity";
@@ -120,29 +119,39 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
   return map;
 }
 
+std::vector<float> direct_light(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                bool with_emitters) {
+  const std::size_t points = request.points.size;
+  return session.download(
+      direct_irradiance_of_points(session, pools, request.variant, request.lighting, request.frame.side, points,
+                                  samples_for(request.lighting, with_emitters), with_emitters, [] { return false; }),
+      3 * points);
+}
+
 /// By the links of `map`, or where there is none by a ray a pair.
 RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
                        const RadiosityMap* map, std::vector<float>& direct, StageLog& stages) {
   stages.start("fmm");
   StageWatch watch(session, "fmm", request);
-  const std::size_t points = request.points.size;
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
-  direct = session.download(direct_irradiance_of_points(session, exchange.pools, request.variant, request.lighting,
-                                                        request.frame.side, points,
-                                                        samples_for(request.lighting, !emitters_exchange),
-                                                        !emitters_exchange, [] { return false; }),
-                            3 * points);
+  direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
   RadiosityField field = map != nullptr
                              ? solve_radiosity_field(session, *map, {direct, emitted}, settings, watch.report())
                              : solve_radiosity_directly(session, exchange, {direct, emitted}, settings, watch.report());
-  stages.finish(points, "points");
+  stages.finish(request.points.size, "points");
   return field;
 }
 
 } // namespace
+
+std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request) {
+  const StageWatch watch(session, "direct light", request);
+  if (!has_light(request.lighting)) return std::vector<float>(3 * request.points.size);
+  return direct_light(session, pools, request, true);
+}
 
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages) {

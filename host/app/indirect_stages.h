@@ -41,6 +41,12 @@ bool direct_light_by_radiosity(const Scene& scene);
 /// The irradiance that the picture interpolates: from surfaces, and the direct light where it comes that way.
 Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light, const Scene& scene);
 
+/// IndirectLight::direct where no stage of these has found it, because no surface sends any light to another.
+std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request);
+
+/// pi L_e: radiosity that each point shines with, [points x 3] as IndirectLight.
+std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points);
+
 /// Why vmap and fmm do not run, in a few words; empty when they do: the scene has light, and surfaces that send each
 /// other some of it.
 std::string reason_against_radiosity(const IndirectRequest& request);

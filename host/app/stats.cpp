@@ -53,6 +53,18 @@ void add_radiosity(const IndirectLight& light, const RadiositySettings& settings
                  {"rays", l.rays}};
 }
 
+void add_render(const Stats& stats, nlohmann::json& out) {
+  const RenderTotals& r = stats.render;
+  out["render"] = {
+      {"integrator", stats.integrator},
+      {"rays", r.rays},
+      {"eye_rays", r.eye_rays},
+      {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
+      {"eye_mrays_per_s", r.eye_seconds > 0.0 ? 1e-6 * static_cast<double>(r.eye_rays) / r.eye_seconds : 0.0},
+      {"back_face_share", r.back_face_share()},
+      {"interrupted", r.interrupted}};
+}
+
 } // namespace
 
 void write_stats(const std::string& path, const Stats& stats, const StageLog& stages) {
@@ -74,15 +86,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
                    {"bytes", octree.bytes}};
   out["variant"] = variant_json(stats.variant.variant);
   out["variant"]["source"] = stats.variant.source;
-  const RenderTotals& r = stats.render;
-  out["render"] = {
-      {"integrator", stats.integrator},
-      {"rays", r.rays},
-      {"eye_rays", r.eye_rays},
-      {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
-      {"eye_mrays_per_s", r.eye_seconds > 0.0 ? 1e-6 * static_cast<double>(r.eye_rays) / r.eye_seconds : 0.0},
-      {"back_face_share", r.back_face_share()},
-      {"interrupted", r.interrupted}};
+  if (stats.command == "render") add_render(stats, out);
   if (stats.indirect != nullptr && stats.indirect->solution.applies > 0)
     add_radiosity(*stats.indirect, stats.scene->radiosity, out);
   out["stages"] = json::array();

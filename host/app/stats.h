@@ -15,7 +15,7 @@ struct Stats {
   const Scene* scene = nullptr;
   OctreeSummary octree;
   const Session* session = nullptr;
-  RenderTotals render;
+  RenderTotals render;                     ///< of the command render
   const IndirectLight* indirect = nullptr; ///< null, or without applies: there was none
   VariantChoice variant;
   double seconds = 0.0;
