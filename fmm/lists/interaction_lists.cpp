@@ -102,4 +102,16 @@ InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> link
           rows_of(tree, links, kinds, LinkKind::near_)};
 }
 
+ExchangeCounts count_exchanges(const ClusterTree& tree, const InteractionLists& lists) {
+  ExchangeCounts counts;
+  counts.m2l = lists.far.source.size();
+  for (std::size_t k = 0; k < tree.nodes.size(); ++k) {
+    const std::uint64_t receivers = tree.nodes[k].count;
+    counts.m2p += receivers * (lists.mid.begin[k + 1] - lists.mid.begin[k]);
+    for (std::uint32_t e = lists.near_.begin[k]; e < lists.near_.begin[k + 1]; ++e)
+      counts.p2p += receivers * tree.nodes[lists.near_.source[e]].count;
+  }
+  return counts;
+}
+
 } // namespace pointgi

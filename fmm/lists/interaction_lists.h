@@ -19,6 +19,13 @@ struct InteractionLists {
   SourceLists far, mid, near_;
 };
 
+/// What one apply of the operator evaluates.
+struct ExchangeCounts {
+  std::uint64_t m2l = 0; ///< pairs of clusters, each direction one, by expansions
+  std::uint64_t m2p = 0; ///< points with the flux vector of a cluster
+  std::uint64_t p2p = 0; ///< points with points
+};
+
 struct ListOptions {
   /// A far link of fewer than this many pairs of points for each pair of nodes goes as point pairs, which is then
   /// cheaper and exact. 0: only where its splats are so close that they are more than points (FMM_CLOSE).
@@ -31,5 +38,7 @@ struct ListOptions {
 /// are not there.
 InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, std::size_t point_shares,
                                         const Grids& grids, const ListOptions& options);
+
+ExchangeCounts count_exchanges(const ClusterTree& tree, const InteractionLists& lists);
 
 } // namespace pointgi

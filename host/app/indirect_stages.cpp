@@ -13,8 +13,9 @@ namespace {
 /// chosen at random while they are few; what other estimates scatter, the many senders of a receiver average out.
 constexpr unsigned light_samples = 16, sure_lights = 4;
 
-unsigned samples_for(const DeviceLighting& lighting) {
-  const bool sure = lighting.emitters.empty() && !lighting.has_environment && lighting.delta.size() <= sure_lights;
+unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
+  const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
+                    lighting.delta.size() <= sure_lights;
   return sure ? 1 : light_samples;
 }
 
@@ -54,14 +55,29 @@ private:
   std::string done_ = "at work";
 };
 
-Buffer<cl_float4> upload_field(Session& session, const std::vector<float>& irradiance) {
-  std::vector<cl_float4> texels(irradiance.size() / 3);
-  for (std::size_t i = 0; i < texels.size(); ++i)
-    texels[i] = {{irradiance[3 * i], irradiance[3 * i + 1], irradiance[3 * i + 2], 0.0f}};
-  return session.upload(texels);
+} // namespace
+
+std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points) {
+  std::vector<float> emitted(3 * points.size);
+  for (std::size_t p = 0; p < points.size; ++p)
+    for (std::size_t c = 0; c < 3; ++c)
+      emitted[3 * p + c] = 3.14159265f * lighting.materials[static_cast<std::size_t>(points[p].material)].emission[c];
+  return emitted;
 }
 
-} // namespace
+bool direct_light_by_radiosity(const Scene& scene) {
+  return scene.radiosity.direct_light == "radiosity";
+}
+
+Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light, const Scene& scene) {
+  std::vector<float> sum = light.from_surfaces;
+  for (std::size_t i = 0; i < sum.size() && direct_light_by_radiosity(scene); ++i)
+    sum[i] += light.direct[i];
+  std::vector<cl_float4> texels(sum.size() / 3);
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    texels[i] = {{sum[3 * i], sum[3 * i + 1], sum[3 * i + 2], 0.0f}};
+  return session.upload(texels);
+}
 
 void require_known_radiosity(const Scene& scene) {
   if (!scene.radiosity.place) return;
@@ -71,8 +87,9 @@ void require_known_radiosity(const Scene& scene) {
   const std::string& method = scene.radiosity.method;
   if (method != "fmm" && method != "none" && method != "direct")
     refuse("method = \"" + method + "\" is not in this version; it has \"fmm\", \"none\" and \"direct\"");
-  if (scene.radiosity.direct_light != "shadow_rays")
-    refuse("direct_light = \"" + scene.radiosity.direct_light + "\" is not in this version; it has \"shadow_rays\"");
+  if (method == "none" && direct_light_by_radiosity(scene))
+    refuse("direct_light = \"radiosity\" wants a method that exchanges light, but method is \"none\"; choose another "
+           "method, or \"shadow_rays\"");
 }
 
 std::string reason_against_radiosity(const IndirectRequest& request) {
@@ -102,24 +119,39 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
   return map;
 }
 
+std::vector<float> direct_light(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                bool with_emitters) {
+  const std::size_t points = request.points.size;
+  return session.download(
+      direct_irradiance_of_points(session, pools, request.variant, request.lighting, request.frame.side, points,
+                                  samples_for(request.lighting, with_emitters), with_emitters, [] { return false; }),
+      3 * points);
+}
+
 /// By the links of `map`, or where there is none by a ray a pair.
 RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
-                       const RadiosityMap* map, StageLog& stages) {
+                       const RadiosityMap* map, std::vector<float>& direct, StageLog& stages) {
   stages.start("fmm");
   StageWatch watch(session, "fmm", request);
-  const std::size_t points = request.points.size;
   const RadiositySettings& settings = request.scene.radiosity;
-  const std::vector<float> direct = session.download(
-      direct_irradiance_of_points(session, exchange.pools, request.variant, request.lighting, request.frame.side,
-                                  points, samples_for(request.lighting), true, [] { return false; }),
-      3 * points);
-  RadiosityField field = map != nullptr ? solve_radiosity_field(session, *map, direct, settings, watch.report())
-                                        : solve_radiosity_directly(session, exchange, direct, settings, watch.report());
-  stages.finish(points, "points");
+  const bool emitters_exchange = direct_light_by_radiosity(request.scene);
+  direct = direct_light(session, exchange.pools, request, !emitters_exchange);
+  std::vector<float> emitted;
+  if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
+  RadiosityField field = map != nullptr
+                             ? solve_radiosity_field(session, *map, {direct, emitted}, settings, watch.report())
+                             : solve_radiosity_directly(session, exchange, {direct, emitted}, settings, watch.report());
+  stages.finish(request.points.size, "points");
   return field;
 }
 
 } // namespace
+
+std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request) {
+  const StageWatch watch(session, "direct light", request);
+  if (!has_light(request.lighting)) return std::vector<float>(3 * request.points.size);
+  return direct_light(session, pools, request, true);
+}
 
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages) {
@@ -142,9 +174,10 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   else
     map = run_vmap(session, exchange, request, stages);
   light.links = map.vmap.statistics;
-  RadiosityField field = run_fmm(session, exchange, request, directly ? nullptr : &map, stages);
+  RadiosityField field = run_fmm(session, exchange, request, directly ? nullptr : &map, light.direct, stages);
+  light.counts = field.counts;
   light.rays = field.rays;
-  light.irradiance = upload_field(session, field.irradiance);
+  light.from_surfaces = std::move(field.irradiance);
   light.solution = std::move(field.solution);
   spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}",
                directly ? "a ray a pair" : std::to_string(map.vmap.links.size()) + " links", light.solution.applies,

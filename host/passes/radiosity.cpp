@@ -87,6 +87,7 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
   options.seed = scene.seed;
+  options.thesis = settings.vmap == "thesis";
   const DeviceInfo& device = session.info();
   ReportedVisibility reported(oracle, report);
   map.vmap = kept_or_made_links(map.tree, scene.points, reported, options,
@@ -102,13 +103,15 @@ struct ExchangedPoints {
   View<std::uint32_t> place;
 };
 
-void check_sizes(View<std::uint32_t> place, View<float> direct) {
+void check_sizes(View<std::uint32_t> place, const EnteringLight& light) {
   for (const std::uint32_t p : place)
-    if (3 * (static_cast<std::size_t>(p) + 1) > direct.size)
+    if (3 * (static_cast<std::size_t>(p) + 1) > light.direct.size)
       throw std::invalid_argument("radiosity: three direct irradiances a point of the pool");
+  if (light.emitted.size != 0 && light.emitted.size != light.direct.size)
+    throw std::invalid_argument("radiosity: emission of all points of the pool, or of none");
 }
 
-RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exchanged, View<float> direct,
+RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exchanged, const EnteringLight& light,
                            const RadiositySettings& settings, const WorkReport& report) {
   const std::size_t points = exchanged.points.size;
   std::vector<double> emission(3 * points), albedo(3 * points), area(points);
@@ -116,8 +119,9 @@ RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exc
     const Splat& splat = exchanged.points[k];
     area[k] = splat.area;
     for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = 3 * exchanged.place[k] + c;
       albedo[3 * k + c] = splat.colour[c];
-      emission[3 * k + c] = splat.colour[c] * direct[3 * exchanged.place[k] + c];
+      emission[3 * k + c] = splat.colour[c] * light.direct[at] + (light.emitted.size != 0 ? light.emitted[at] : 0.0f);
     }
   }
   ReportedExchange exchange(device, report);
@@ -127,7 +131,7 @@ RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exc
   field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
   std::vector<double> gathered;
   exchange.apply(field.solution.radiosity, Judge::now, gathered);
-  field.irradiance.resize(direct.size);
+  field.irradiance.resize(light.direct.size);
   for (std::size_t k = 0; k < points; ++k)
     for (std::size_t c = 0; c < 3; ++c)
       field.irradiance[3 * exchanged.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
@@ -135,38 +139,39 @@ RadiosityField solve_field(RadiosityOperator& device, const ExchangedPoints& exc
 }
 
 /// Of a pool in which nothing exchanges light.
-RadiosityField dark_field(View<float> direct) {
+RadiosityField dark_field(const EnteringLight& light) {
   RadiosityField field;
-  field.irradiance.resize(direct.size);
+  field.irradiance.resize(light.direct.size);
   field.solution.end = SolveEnd::converged;
   return field;
 }
 
 } // namespace
 
-RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, View<float> direct,
+RadiosityField solve_radiosity_field(Session& session, const RadiosityMap& map, const EnteringLight& light,
                                      const RadiositySettings& settings, const WorkReport& report) {
-  check_sizes(map.place, direct);
-  if (map.place.empty()) return dark_field(direct);
+  check_sizes(map.place, light);
+  if (map.place.empty()) return dark_field(light);
   FmmOptions options;
   options.grid.order = static_cast<unsigned>(settings.order);
   DeviceFmm exchange(session, map.tree, map.vmap.links, options, map.vmap.point_shares);
-  RadiosityField field = solve_field(exchange, {map.tree.points, map.place}, direct, settings, report);
+  RadiosityField field = solve_field(exchange, {map.tree.points, map.place}, light, settings, report);
+  field.counts = count_exchanges(map.tree, exchange.lists());
   field.rays = map.vmap.statistics.rays;
   return field;
 }
 
-RadiosityField solve_radiosity_directly(Session& session, const ExchangeScene& scene, View<float> direct,
+RadiosityField solve_radiosity_directly(Session& session, const ExchangeScene& scene, const EnteringLight& light,
                                         const RadiositySettings& settings, const WorkReport& report) {
   // The pool's order keeps close points together.
   const std::vector<std::uint32_t> places = exchanging_points(scene);
-  check_sizes(places, direct);
-  if (places.empty()) return dark_field(direct);
+  check_sizes(places, light);
+  if (places.empty()) return dark_field(light);
   const std::vector<Splat> points = points_at(scene, places);
   DirectOptions options;
   options.step_delta = static_cast<float>(scene.variant.step_delta / scene.side);
   DeviceDirect exchange(session, scene.pools, scene.variant, points, options);
-  RadiosityField field = solve_field(exchange, {points, places}, direct, settings, report);
+  RadiosityField field = solve_field(exchange, {points, places}, light, settings, report);
   field.rays = exchange.rays();
   return field;
 }

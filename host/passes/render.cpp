@@ -121,7 +121,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
   TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
-                     request.irradiance);
+                     request.irradiance, request.shadow_rays);
   const std::size_t channels = film_channels(request.has_indirect()).size();
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;

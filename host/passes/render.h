@@ -39,6 +39,7 @@ struct RenderRequest {
   TraversalVariant variant;
   std::optional<LightPaths> paths;               ///< by path tracing, of these; else direct light and `irradiance`
   const Buffer<cl_float4>* irradiance = nullptr; ///< of each point of the pool, from surfaces; null: none
+  bool shadow_rays = true; ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
 
   bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
 };

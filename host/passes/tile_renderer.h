@@ -17,10 +17,11 @@ struct TileSeconds {
 class TileRenderer {
 public:
   /// `side`: of the root cube, world units; `paths`: by path tracing; else
-  /// `irradiance`, of each point, is reflected too where it is there. Builds the programs where they are not built yet.
+  /// `irradiance`, of each point, is reflected too where it is there, and instead of shadow rays' light without
+  /// `shadow_rays`. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
-               const Buffer<cl_float4>* irradiance = nullptr);
+               const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true);
 
   pg_uint samples() const { return params_.samples; }
 

@@ -23,7 +23,7 @@ std::string group_options(WorkGroup group) {
 std::string feature_options(const SceneFeatures& features) {
   return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
          (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
-         (features.radiosity ? " -D HAS_RADIOSITY" : "");
+         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS");
 }
 
 } // namespace

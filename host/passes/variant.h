@@ -30,7 +30,8 @@ struct SceneFeatures {
   bool delta_lights = false;
   bool emitters = false;
   bool environment = false;
-  bool radiosity = false; ///< of the picture: points have irradiance from surfaces
+  bool radiosity = false;  ///< of the picture: points have irradiance from surfaces
+  bool shadow_rays = true; ///< of the picture: direct light comes by them, not with the points' irradiance
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.

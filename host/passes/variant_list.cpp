@@ -151,6 +151,7 @@ std::vector<ProgramUse> all_programs() {
     add(eye_rays_program(v), cpu, gpu);
     add(shade_program(v, {}), cpu, gpu);
     add(shade_program(v, {true, true, true, true}), cpu, gpu);
+    add(shade_program(v, {false, true, false, true, false}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);

@@ -126,8 +126,9 @@ struct RadiositySettings {
   int point_samples = 1; ///< segments from a point to a cluster partly hidden from it; 0: none of its own
   double epsilon = 3e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
-  std::string direct_light = "shadow_rays";
-  std::optional<SourcePlace> place; ///< set when the file has the section
+  std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
+  std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
+  std::optional<SourcePlace> place;         ///< set when the file has the section
 };
 struct CausticSettings {
   long long photons = 400000;

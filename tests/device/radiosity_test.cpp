@@ -48,9 +48,9 @@ struct Stage {
     for (std::size_t p = 0; p < points().size; ++p)
       if (points()[p].material == lit_material) std::fill_n(&direct[3 * p], 3, 1.0f);
     if (directly)
-      return solve_radiosity_directly(session(), {on_device, variant, points(), exchanges}, direct, {}, quiet)
+      return solve_radiosity_directly(session(), {on_device, variant, points(), exchanges}, {direct, {}}, {}, quiet)
           .irradiance;
-    return solve_radiosity_field(session(), map(exchanges), direct, {}, quiet).irradiance;
+    return solve_radiosity_field(session(), map(exchanges), {direct, {}}, {}, quiet).irradiance;
   }
 };
 
@@ -116,7 +116,7 @@ TEST_CASE("V-map and FMM end between two launches when they are told to, and can
   stops_after(2, [&] { room.map({1}); });
   const RadiosityMap map = room.map({1});
   CHECK_FALSE(map.kept); // what was not finished was not kept
-  stops_after(7, [&] { solve_radiosity_field(session(), map, direct, {}, Stage::quiet); });
-  const auto once = solve_radiosity_field(session(), map, direct, {}, Stage::quiet).irradiance;
-  CHECK(solve_radiosity_field(session(), map, direct, {}, Stage::quiet).irradiance == once);
+  stops_after(7, [&] { solve_radiosity_field(session(), map, {direct, {}}, {}, Stage::quiet); });
+  const auto once = solve_radiosity_field(session(), map, {direct, {}}, {}, Stage::quiet).irradiance;
+  CHECK(solve_radiosity_field(session(), map, {direct, {}}, {}, Stage::quiet).irradiance == once);
 }

@@ -94,7 +94,7 @@ TEST_CASE("light between surfaces is part of a picture unless the scene or the c
   CHECK(names_of(whole["stages"], false) == std::vector<std::string>{"photon"});
   for (const char* figure : {"pairs_tested", "links", "rays"})
     CHECK(whole["vmap"][figure].is_number());
-  for (const char* figure : {"order", "iterations", "residual"})
+  for (const char* figure : {"order", "m2l", "p2p", "iterations", "residual"})
     CHECK(whole["radiosity"][figure].is_number());
   CHECK(whole["radiosity"]["method"] == "fmm");
   CHECK(read_exr(folder.file("x.exr")).channels.count("Diffuse.G") == 1);

@@ -66,6 +66,32 @@ TEST_CASE("a far link between splats that touch goes as point pairs") {
       CHECK(std::abs(tree.nodes[k].centre[0] - tree.nodes[lists.far.source[e]].centre[0]) > 0.1f);
 }
 
+TEST_CASE("what an apply evaluates is counted from the lists") {
+  const ClusterTree tree = build_clusters(inside_cube(20), {});
+  const auto links = links_without_visibility(tree);
+  const std::uint64_t points = tree.points.size();
+  // No expansions: every point with every point, itself included.
+  const ExchangeCounts pairs = count_exchanges(tree, make_interaction_lists(tree, links, make_grids(tree, {}), {1e9}));
+  CHECK(pairs.m2l == 0);
+  CHECK(pairs.p2p == points * points);
+  const InteractionLists lists = make_interaction_lists(tree, links, make_grids(tree, {}), {});
+  const ExchangeCounts counts = count_exchanges(tree, lists);
+  std::uint64_t far = 0;
+  for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
+    for (std::uint32_t e = lists.far.begin[k]; e < lists.far.begin[k + 1]; ++e)
+      far += std::uint64_t{tree.nodes[k].count} * tree.nodes[lists.far.source[e]].count;
+  CHECK(counts.m2l == lists.far.source.size());
+  CHECK(counts.m2l > 0);
+  CHECK(counts.p2p + far == points * points);
+  // One flux vector each way, which all points at the other end read.
+  std::vector<Link> mid;
+  for (const Link& link : links)
+    if (link.kind == LinkKind::far && mid.empty()) mid.push_back({link.a, link.b, 1.0f, LinkKind::mid});
+  REQUIRE_FALSE(mid.empty());
+  CHECK(count_exchanges(tree, make_interaction_lists(tree, mid, make_grids(tree, {}), {})).m2p ==
+        tree.nodes[mid[0].a].count + tree.nodes[mid[0].b].count);
+}
+
 TEST_CASE("links that cannot be are refused") {
   const ClusterTree tree = build_clusters(inside_cube(8), {});
   const Grids grids = make_grids(tree, {});
