@@ -71,10 +71,11 @@ TEST_CASE("what an apply evaluates is counted from the lists") {
   const auto links = links_without_visibility(tree);
   const std::uint64_t points = tree.points.size();
   // No expansions: every point with every point, itself included.
-  const ExchangeCounts pairs = count_exchanges(tree, make_interaction_lists(tree, links, make_grids(tree, {}), {1e9}));
+  const ExchangeCounts pairs =
+      count_exchanges(tree, make_interaction_lists(tree, links, 0, make_grids(tree, {}), {1e9}));
   CHECK(pairs.m2l == 0);
   CHECK(pairs.p2p == points * points);
-  const InteractionLists lists = make_interaction_lists(tree, links, make_grids(tree, {}), {});
+  const InteractionLists lists = make_interaction_lists(tree, links, 0, make_grids(tree, {}), {});
   const ExchangeCounts counts = count_exchanges(tree, lists);
   std::uint64_t far = 0;
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
@@ -88,7 +89,7 @@ TEST_CASE("what an apply evaluates is counted from the lists") {
   for (const Link& link : links)
     if (link.kind == LinkKind::far && mid.empty()) mid.push_back({link.a, link.b, 1.0f, LinkKind::mid});
   REQUIRE_FALSE(mid.empty());
-  CHECK(count_exchanges(tree, make_interaction_lists(tree, mid, make_grids(tree, {}), {})).m2p ==
+  CHECK(count_exchanges(tree, make_interaction_lists(tree, mid, 0, make_grids(tree, {}), {})).m2p ==
         tree.nodes[mid[0].a].count + tree.nodes[mid[0].b].count);
 }
 
