@@ -258,9 +258,8 @@ VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOpt
   if (options.point_samples > 255) throw std::invalid_argument("vmap: samples of a point must be from 0 to 255");
   VMap map = LinkMaker(tree, oracle, options).run();
   if (options.point_samples > 0 && !options.thesis)
-    map.point_shares =
-        make_point_shares(tree, map.links, oracle,
-                          {options.point_samples, options.epsilon, options.seed, options.batch}, map.statistics.rays);
+    map.point_shares = make_point_shares(tree, map.links, oracle, {options.point_samples, options.seed, options.batch},
+                                         map.statistics.rays);
   return map;
 }
 

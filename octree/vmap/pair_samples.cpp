@@ -11,18 +11,6 @@ namespace {
 /// Candidates for each segment of towards(), where a cluster has more points than that.
 constexpr std::uint32_t candidates = 8, most_candidates = 64;
 
-/// cos cos A / d^4 of two points, without the constant; 0 where they do not face each other.
-float exchange_weight(const Splat& at, const Splat& from) {
-  float before_at = 0.0f, before_from = 0.0f, d2 = 0.0f;
-  for (int k = 0; k < 3; ++k) {
-    const float d = from.position[k] - at.position[k];
-    before_at += at.normal[k] * d;
-    before_from -= from.normal[k] * d;
-    d2 += d * d;
-  }
-  return before_at > 0.0f && before_from > 0.0f ? (before_at / d2) * (before_from / d2) * from.area : 0.0f;
-}
-
 /// Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014): the finaliser of splitmix64.
 std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
@@ -53,6 +41,18 @@ bool face_each_other(const Splat& a, const Splat& b) {
     before_b -= b.normal[k] * d;
   }
   return before_a > 0.0f && before_b > 0.0f;
+}
+
+float exchange_weight(const Splat& at, const Splat& from) {
+  float before_at = 0.0f, before_from = 0.0f, d2 = 0.0f;
+  for (int k = 0; k < 3; ++k) {
+    const float d = from.position[k] - at.position[k];
+    before_at += at.normal[k] * d;
+    before_from -= from.normal[k] * d;
+    d2 += d * d;
+  }
+  if (!(before_at > 0.0f && before_from > 0.0f)) return 0.0f;
+  return (before_at / d2) * (before_from / (d2 + 0.318309886f * from.area)) * from.area;
 }
 
 PairSamples::PairSamples(const ClusterTree& tree, std::uint32_t seed, bool thesis)

@@ -7,6 +7,10 @@ namespace pointgi {
 /// Whether light can go between two points as far as their normals are concerned.
 bool face_each_other(const Splat& a, const Splat& b);
 
+/// What `from` sends to `at` at equal radiosity, cos cos A / (d^2 + A / pi), without the constant: a disc seen from its
+/// axis, so that the touching do not count for all. 0 where they do not face each other.
+float exchange_weight(const Splat& at, const Splat& from);
+
 /// Chooses points of clusters by area.
 class PairSamples {
 public:
