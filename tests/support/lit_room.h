@@ -44,7 +44,8 @@ inline std::vector<Splat> lit_room_splats(std::size_t count) {
     if (axis != 2) detail::add_rectangle(splats, axis, -1.0, low, size[(axis + 1) % 3], size[(axis + 2) % 3], h);
   }
   const std::size_t lamp = splats.size();
-  detail::add_rectangle(splats, 2, -1.0, {-0.3, -0.3, 0.95}, 0.6, 0.6, h);
+  // On the ceiling: in a gap behind a lamp both solvers would answer, at each size differently, what is its surface.
+  detail::add_rectangle(splats, 2, -1.0, {-0.3, -0.3, 0.995}, 0.6, 0.6, h);
   for (std::size_t i = block; i < splats.size(); ++i) {
     for (float& c : splats[i].colour)
       c = i < lamp ? 0.7f : 0.0f;
