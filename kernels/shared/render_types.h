@@ -63,9 +63,18 @@ typedef struct Emitter {
   float cumulative; /* bytes 4-7: share of this and all earlier emitters in the emitted power; the last is 1 */
 } Emitter;
 
+#define MATERIAL_DIFFUSE 0u
+#define MATERIAL_MIRROR 1u /* its front reflects */
+#define MATERIAL_GLASS 2u  /* the normals point out of it */
+#define MATERIAL_PHONG 3u  /* diffuse, and a specular lobe */
+
 typedef struct Material {
-  float emission[3]; /* bytes 0-11: radiance of the front side, scaled */
-  float pad0;
+  float emission[3];   /* bytes 0-11: radiance of the front side, scaled */
+  pg_uint type;        /* bytes 12-15: MATERIAL_... */
+  float specular[3];   /* bytes 16-27: mirror: reflectance; phong: what the lobe reflects at most */
+  float exponent;      /* bytes 28-31: phong: of the lobe */
+  float absorption[3]; /* bytes 32-43: glass: share of light lost, per root cube side (Beer) */
+  float ior;           /* bytes 44-47: glass: index of refraction */
 } Material;
 
 /* One pixel of the film, FILM_CHANNELS scalars. Radiances are scaled means over the pixel's samples; Z, N, P and albedo
