@@ -184,6 +184,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   params.samples = static_cast<pg_uint>(scene.render.spp);
   params.seed = scene.render.seed;
   params.jitter = scene.render.jitter ? 1u : 0u;
+  params.most_bounces = scene.render.max_depth ? static_cast<pg_uint>(*scene.render.max_depth) : NO_BOUNCE_LIMIT;
   params.delta_lights = static_cast<pg_uint>(result.delta.size());
   params.emitters = static_cast<pg_uint>(result.emitters.size());
   result.has_environment = scene.environment.maxCoeff() > 0.0;

@@ -22,6 +22,7 @@ struct DeviceLighting {
 
   /// Whether some splat's material, not only some material, is of this type.
   bool has_type(pg_uint type) const { return type < 32 && ((types >> type) & 1u) != 0; }
+  bool has_specular() const { return (types & ~(1u << MATERIAL_DIFFUSE)) != 0; }
   pg_uint types = 0; ///< bit MATERIAL_...: splats of that type are there
 };
 

@@ -32,13 +32,14 @@ typedef struct ShadowEnds {
 #ifdef HAS_SPECULAR
   uint origin_material; /* 1 + material of the surface at the origin: discs of others are no part of it; 0: all may be */
   uint origin_back;     /* 1: the ray goes off on the back side of the surface there, into glass */
+  uint medium;          /* 1 + material of the glass that the ray is in; 0: none */
 #endif
 } ShadowEnds;
 
 static inline ShadowEnds free_ends(void) {
   ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
 #ifdef HAS_SPECULAR
-  ends.origin_material = ends.origin_back = 0u;
+  ends.origin_material = ends.origin_back = ends.medium = 0u;
 #endif
   return ends;
 }

@@ -38,13 +38,16 @@ static inline bool scatter_mirror(const Surface* s, const __global Material* mat
   return s->front;
 }
 
-#ifdef HAS_GLASS
 /* What glass the ray was in on its way to the surface; see kernels/lib/media.cl. */
 static inline Media media_before(Media media, const Surface* s, const __global Material* materials) {
-  if (materials[s->material].type != MATERIAL_GLASS)
-    return media;
-  return s->front ? without_medium(media, s->material) : within_medium(media, s->material);
+#ifdef HAS_GLASS
+  if (materials[s->material].type == MATERIAL_GLASS)
+    return s->front ? without_medium(media, s->material) : within_medium(media, s->material);
+#endif
+  return media;
 }
+
+#ifdef HAS_GLASS
 
 /* Glass, from either side: reflected with the probability of its Fresnel reflectance (u in [0,1) decides), else let
  * through; all of the light goes the way that is chosen. Radiance is carried divided by the index of refraction squared,
@@ -77,6 +80,24 @@ static inline bool scatter_phong(const Surface* s, const __global Material* mate
 }
 #endif
 
+/* What the surface makes of the ray, u in [0,1)^2 deciding: mirror, glass, or the lobe of a Phong surface. False where the
+ * ray ends: on a diffuse surface, and on backs of all but glass. */
+static inline bool scatter_ray(const Surface* s, const __global Material* materials, float3 direction, float2 u,
+                               Media* media, Scatter* out) {
+  const __global Material* material = materials + s->material;
+#ifdef HAS_GLASS
+  if (material->type == MATERIAL_GLASS) {
+    scatter_glass(s, materials, direction, u.x, media, out);
+    return true;
+  }
+#endif
+#ifdef HAS_PHONG
+  if (material->type == MATERIAL_PHONG)
+    return scatter_phong(s, material, direction, u.x, u.y, out);
+#endif
+  return material->type == MATERIAL_MIRROR && scatter_mirror(s, material, direction, out);
+}
+
 /* The ray that goes on. */
 static inline Ray scattered_ray(const Surface* s, const Scatter* scatter, float step_delta) {
   Ray ray;
@@ -91,12 +112,13 @@ static inline Ray scattered_ray(const Surface* s, const Scatter* scatter, float 
 }
 
 /* The surface that it leaves, for trace_closest_from and blended_surface. */
-static inline ShadowEnds scattered_ends(const Surface* s, const Scatter* scatter) {
+static inline ShadowEnds scattered_ends(const Surface* s, const Scatter* scatter, Media media) {
   ShadowEnds ends = free_ends();
   ends.origin_normal = s->normal;
   ends.origin_radius = s->radius;
   ends.origin_material = s->material + 1u;
   ends.origin_back = scatter->back ? 1u : 0u;
+  ends.medium = media.x + 1u; /* NO_MEDIUM: 0 */
   return ends;
 }
 #endif
