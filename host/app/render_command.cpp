@@ -213,9 +213,9 @@ ExitCode run_render(const RenderOptions& options) {
   const IndirectLight indirect = run_indirect_stages(session, on_device, variant, scene, placed.frame, lighting,
                                                      points_of(pools), paths.has_value(), stages, interrupted);
   const std::optional<Buffer<cl_float4>> field = normal_field_of(session, lighting, points_of(pools), stages);
-  stages.skip("photon", "no specular material");
-  if (scene.caustics.place)
-    spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
+  const char* no_photons = field ? "caustics are not in this version" : "no specular material";
+  stages.skip("photon", no_photons);
+  if (scene.caustics.place) spdlog::warn("{}: [caustics] has no effect: {}", scene.caustics.place->text(), no_photons);
   RenderRequest request{window, lighting, placed.frame, ids, variant, paths};
   request.irradiance = indirect.irradiance ? &*indirect.irradiance : nullptr;
   request.normal_field = field ? &*field : nullptr;

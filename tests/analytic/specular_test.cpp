@@ -217,14 +217,17 @@ TEST_CASE("Phong surfaces under a uniform sky and under a point light") {
       material("phong", "phong",
                "albedo = [0.3, 0.3, 0.3]\nspecular = [0.5, 0.5, 0.5]\nexponent = " + number(exponent)) +
       quad("-1.0, -1.0, 0.0", "2.0, 0.0, 0.0", "0.0, 2.0, 0.0", "phong", 0.1);
+  // A light 30 degrees aside at distance 2. Each light is there in both scenes, so that they share their kernels.
+  const auto lights = [](double sky, double power) {
+    return environment(sky) + "[[light]]\ntype = \"point\"\nposition = [1.0, 0.0, " + number(std::sqrt(3.0)) +
+           "]\npower_w = " + grey(power) + "\n";
+  };
   // Straight before it a lobe gives back all that it may: specular; aside less, what falls below the surface is lost.
-  const std::string sky = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 2.0, 64) + environment(1.0) + surface;
+  const std::string sky = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 2.0, 64) + surface + lights(1.0, 1e-9);
   CHECK(mean(render_text(sky), "R") == Approx(0.8).epsilon(0.01)); // noise of 36864 samples below 0.3 %
   CHECK(mean(trace(sky), "R") == Approx(0.8).epsilon(0.01));
-  // A light 30 degrees aside at distance 2: f cos I / d², f = 0.3 / pi + 0.5 (n + 2) / (2 pi) cos^n 30.
-  const std::string lit = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 0.2, 32) + surface +
-                          "[[light]]\ntype = \"point\"\nposition = [1.0, 0.0, " + number(std::sqrt(3.0)) +
-                          "]\npower_w = [40.0, 40.0, 40.0]\n";
+  // f cos I / d², f = 0.3 / pi + 0.5 (n + 2) / (2 pi) cos^n 30.
+  const std::string lit = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 0.2, 32) + surface + lights(1e-9, 40.0);
   const double cosine = std::cos(pi / 6.0), irradiance = 40.0 / (4.0 * pi) * cosine / 4.0;
   const double diffuse = 0.3 / pi * irradiance;
   const double highlight = 0.5 * (exponent + 2.0) / (2.0 * pi) * std::pow(cosine, exponent) * irradiance;
