@@ -130,7 +130,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
   TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
-                     request.irradiance, request.normal_field);
+                     request.irradiance, request.shadow_rays, request.normal_field);
   const std::size_t channels = film_channels(request.has_indirect(), request.has_specular()).size();
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;

@@ -22,6 +22,12 @@ public:
   /// Goes through all pairs of points.
   std::uint32_t exhaustive(std::uint32_t a, std::uint32_t b, std::uint32_t count, std::vector<Segment>& out) const;
 
+  /// Appends `count` segments from a point to points of cluster b, drawn in proportion to what each sends it at equal
+  /// radiosity, stratified, the same one more than once where it sends most; 0 where none of those looked at faces it.
+  /// Of a cluster of many points not all are looked at. `salt` and the point turn the strata.
+  std::uint32_t towards(std::uint32_t point, std::uint32_t b, std::uint32_t count, std::uint32_t salt,
+                        std::vector<Segment>& out) const;
+
   /// Appends the segment between the points nearest to the centroids, whether they face each other or not; 1.
   std::uint32_t central(std::uint32_t a, std::uint32_t b, std::vector<Segment>& out) const;
 
