@@ -32,7 +32,6 @@ Scene checked_scene(const BakeOptions& options) {
   if (!has_extension(options.output, ".ply"))
     throw Error(ExitCode::output, options.output + ": a lit cloud is written as .ply; choose such a name");
   Scene scene = load_any(options.input, overrides_of(options));
-  refuse_unsupported(scene);
   require_known_radiosity(scene);
   refuse_input_as_output(options, scene);
   for (const std::string& file : {options.output, options.stats_file})

@@ -1,5 +1,6 @@
 #include "host/app/indirect_stages.h"
 #include "host/app/progress.h"
+#include "host/cloud/normal_field.h"
 #include "host/error.h"
 #include "host/passes/point_irradiance.h"
 #include <algorithm>
@@ -90,6 +91,24 @@ void require_known_radiosity(const Scene& scene) {
   if (method == "none" && direct_light_by_radiosity(scene))
     refuse("direct_light = \"radiosity\" wants a method that exchanges light, but method is \"none\"; choose another "
            "method, or \"shadow_rays\"");
+}
+
+std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
+                                                 StageLog& stages) {
+  if (!lighting.has_specular()) {
+    stages.skip("normals", "no specular material");
+    return std::nullopt;
+  }
+  stages.start("normals");
+  const auto slopes = fit_normal_field(points, [&](const Splat& splat) {
+    return lighting.materials[static_cast<std::size_t>(splat.material)].type != MATERIAL_DIFFUSE;
+  });
+  std::vector<cl_float4> texels(slopes.size());
+  for (std::size_t i = 0; i < slopes.size(); ++i)
+    std::copy_n(slopes[i].slope, 4, texels[i].s);
+  Buffer<cl_float4> field = session.upload(texels);
+  stages.finish(slopes.size(), "points");
+  return field;
 }
 
 std::string reason_against_radiosity(const IndirectRequest& request) {

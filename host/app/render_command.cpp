@@ -123,7 +123,6 @@ Scene checked_scene(const RenderOptions& options) {
     const double factor = options.quality == "draft" ? 0.25 : 4.0;
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
   }
-  refuse_unsupported(scene);
   if (options.integrator != "path") require_known_radiosity(scene);
   // Before the work, not after it.
   require_writable_picture(output_of(options));
@@ -180,9 +179,10 @@ ExitCode run_render(const RenderOptions& options) {
   const IndirectRequest wanted{variant,           scene,         ready.frame, lighting, points_of(pools),
                                paths.has_value(), options.quiet, interrupted};
   const IndirectLight indirect = run_indirect_stages(session, ready.on_device, wanted, stages);
-  stages.skip("photon", "no specular material");
-  if (scene.caustics.place)
-    spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
+  const std::optional<Buffer<cl_float4>> field = normal_field_of(session, lighting, points_of(pools), stages);
+  const char* no_photons = field ? "caustics are not in this version" : "no specular material";
+  stages.skip("photon", no_photons);
+  if (scene.caustics.place) spdlog::warn("{}: [caustics] has no effect: {}", scene.caustics.place->text(), no_photons);
   RenderRequest request{window, lighting, ready.frame, ready.ids, variant, paths};
   Buffer<cl_float4> irradiance;
   if (!indirect.from_surfaces.empty()) {
@@ -190,8 +190,9 @@ ExitCode run_render(const RenderOptions& options) {
     request.irradiance = &irradiance;
     request.shadow_rays = !direct_light_by_radiosity(scene);
   }
+  request.normal_field = field ? &*field : nullptr;
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
-                       film_channels(request.has_indirect()),
+                       film_channels(request.has_indirect(), request.has_specular()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
   const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)

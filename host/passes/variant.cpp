@@ -23,7 +23,9 @@ std::string group_options(WorkGroup group) {
 std::string feature_options(const SceneFeatures& features) {
   return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
          (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
-         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS");
+         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
+         (features.specular ? " -D HAS_SPECULAR" : "") + (features.glass ? " -D HAS_GLASS" : "") +
+         (features.phong ? " -D HAS_PHONG" : "");
 }
 
 } // namespace
@@ -69,6 +71,11 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
 
 Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features) {
   return program(variant, "fmm/direct_irradiance.cl", feature_options(features));
+}
+
+Program specular_rays_program(const TraversalVariant& variant) {
+  return program(variant, "traverse/specular_rays.cl",
+                 feature_options({false, false, false, false, true, true, true, true}));
 }
 
 Program segments_program(const TraversalVariant& variant) {

@@ -32,6 +32,9 @@ struct SceneFeatures {
   bool environment = false;
   bool radiosity = false;  ///< of the picture: points have irradiance from surfaces
   bool shadow_rays = true; ///< of the picture: direct light comes by them, not with the points' irradiance
+  bool specular = false;   ///< some splats are no diffuse ones: rays go on, normals are a field
+  bool glass = false;      ///< some are glass; specular too then
+  bool phong = false;      ///< some have a Phong lobe; specular too then
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
@@ -54,13 +57,16 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
 /// Direct irradiance of the points, direct_irradiance_of_points.
 Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features);
 
+/// Given rays through specular surfaces, trace_specular_rays, for tests.
+Program specular_rays_program(const TraversalVariant& variant);
+
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);
 /// Visibility of all pairs of points for the direct solver, pairs_visible.
 Program pairs_program(const TraversalVariant& variant);
 
 /// The picture by path tracing, path_pixels: a pixel a work-group of 8x4; never with fast math, for it is what others
-/// are measured by. `some_paths`: params.path_classes leaves some out.
+/// are measured by. `some_paths`: params.path_states leaves some out.
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);
 
 /// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
