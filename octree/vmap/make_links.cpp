@@ -255,7 +255,6 @@ VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOpt
   if (!(options.epsilon >= 0.0f)) throw std::invalid_argument("vmap: epsilon must not be negative");
   if (!(options.separation > 0.0f && options.separation <= 1.0f))
     throw std::invalid_argument("vmap: separation must be above 0 and at most 1");
-  if (options.point_samples > 255) throw std::invalid_argument("vmap: samples of a point must be from 0 to 255");
   VMap map = LinkMaker(tree, oracle, options).run();
   if (options.point_samples > 0 && !options.thesis)
     map.point_shares = make_point_shares(tree, map.links, oracle, {options.point_samples, options.seed, options.batch},

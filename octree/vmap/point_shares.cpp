@@ -15,6 +15,9 @@ constexpr std::size_t grain = 16;
 /// Near leaves ask every pair of their points, unless they hold more pairs than this (points in one place).
 constexpr std::size_t most_pairs = 1u << 12;
 
+/// More points than this never share an answer.
+constexpr std::size_t largest_group = 64;
+
 std::uint32_t ends_of(const ClusterTree& tree, const Link& link) {
   return tree.nodes[link.a].count + tree.nodes[link.b].count;
 }
@@ -32,32 +35,41 @@ void for_pairs(const ClusterTree& tree, const Link& link, const Use& use) {
       if (face_each_other(tree.points[i], tree.points[j])) use(i, j);
 }
 
-/// Calls use(point, other cluster) for the points of both ends.
+/// Calls use(first, end, other cluster) for the points of both ends, in groups of at most `size` that stand one after
+/// the other along the tree's curve. They begin elsewhere for each link, so that no two points share all answers.
 template <class Use>
-void for_ends(const ClusterTree& tree, const Link& link, const Use& use) {
-  const Cluster &a = tree.nodes[link.a], &b = tree.nodes[link.b];
-  for (std::uint32_t i = a.first_point; i < a.first_point + a.count; ++i)
-    use(i, link.b);
-  for (std::uint32_t i = b.first_point; i < b.first_point + b.count; ++i)
-    use(i, link.a);
+void for_groups(const ClusterTree& tree, const Link& link, std::uint32_t size, const Use& use) {
+  const std::uint32_t shift = (link.a * 0x9e3779b9u + link.b * 0x85ebca6bu) >> 7;
+  for (const auto& [receiver, source] : {std::pair{link.a, link.b}, std::pair{link.b, link.a}}) {
+    const Cluster& c = tree.nodes[receiver];
+    std::uint32_t first = c.first_point;
+    for (std::uint32_t end = first + size - shift % size; first < c.first_point + c.count; first = end, end += size)
+      use(first, end = std::min(end, c.first_point + c.count), source);
+  }
 }
 
-/// Of some links: what is asked, and for those that do not ask pairs how often for each of their points.
+/// Of some links: what is asked, and for those that do not ask pairs whether each of their groups did.
 struct Questions {
   std::vector<Segment> segments;
-  std::vector<std::uint8_t> asked;
+  std::vector<std::uint8_t> asked; ///< 1, or 0 where nothing faces
 };
 
 class ShareMaker {
 public:
-  ShareMaker(const ClusterTree& tree, const PointShareOptions& options)
-      : tree_(tree), options_(options), samples_(tree, options.seed, false) {}
+  /// `partial`: all links that get shares.
+  ShareMaker(const ClusterTree& tree, const std::vector<const Link*>& partial, const PointShareOptions& options)
+      : tree_(tree), samples_(tree, options.seed, false) {
+    std::size_t alone = 0;
+    for (const Link* link : partial)
+      if (!asks_pairs(tree, *link)) alone += ends_of(tree, *link);
+    const std::size_t wanted = std::size_t{options.samples} * tree.points.size();
+    group_ = static_cast<std::uint32_t>(std::clamp<std::size_t>((alone + wanted - 1) / wanted, 1, largest_group));
+  }
 
   /// About how many segments a link asks.
   std::size_t cost(const Link& link) const {
     const Cluster &a = tree_.nodes[link.a], &b = tree_.nodes[link.b];
-    return asks_pairs(tree_, link) ? std::size_t{a.count} * b.count
-                                   : std::size_t{options_.samples} * ends_of(tree_, link);
+    return asks_pairs(tree_, link) ? std::size_t{a.count} * b.count : ends_of(tree_, link) / group_ + 2;
   }
 
   void ask(const Link& link, Questions& q) const {
@@ -65,8 +77,9 @@ public:
       for_pairs(tree_, link, [&](std::uint32_t i, std::uint32_t j) { q.segments.push_back({i, j}); });
       return;
     }
-    for_ends(tree_, link, [&](std::uint32_t point, std::uint32_t other) {
-      q.asked.push_back(static_cast<std::uint8_t>(samples_.towards(point, other, options_.samples, 0, q.segments)));
+    for_groups(tree_, link, group_, [&](std::uint32_t first, std::uint32_t end, std::uint32_t other) {
+      const std::uint32_t point = first + (other * 0x9e3779b9u >> 8) % (end - first);
+      q.asked.push_back(static_cast<std::uint8_t>(samples_.towards(point, other, 1, 0, q.segments)));
     });
   }
 
@@ -76,12 +89,12 @@ public:
       answer_pairs(link, blocked, shares);
       return;
     }
-    for (std::uint32_t i = 0; i < ends_of(tree_, link); ++i, ++asked) {
-      unsigned open = 0;
-      for (unsigned s = 0; s < *asked; ++s)
-        open += *blocked++ == 0;
-      put(link, static_cast<float>(open), *asked, shares + i);
-    }
+    for_groups(tree_, link, group_, [&](std::uint32_t first, std::uint32_t end, std::uint32_t) {
+      put(link, *asked != 0 && *blocked == 0 ? 1.0f : 0.0f, *asked, shares);
+      std::fill_n(shares, end - first, *shares);
+      shares += end - first;
+      blocked += *asked++;
+    });
   }
 
 private:
@@ -108,8 +121,8 @@ private:
   }
 
   const ClusterTree& tree_;
-  PointShareOptions options_;
   PairSamples samples_;
+  std::uint32_t group_ = 1; ///< points that share an answer
 };
 
 /// Gives every partly visible link a place for its shares; these links and the length of all shares.
@@ -142,11 +155,11 @@ std::vector<Segment> joined(const std::vector<Questions>& questions, std::vector
 
 std::vector<std::uint8_t> make_point_shares(const ClusterTree& tree, std::vector<Link>& links, VisibilityOracle& oracle,
                                             const PointShareOptions& options, std::uint64_t& rays) {
-  if (options.samples < 1 || options.samples > 255)
-    throw std::invalid_argument("vmap: samples of a point must be from 1 to 255");
-  const auto [partial, all] = place_shares(tree, links);
-  std::vector<std::uint8_t> shares(all);
-  const ShareMaker maker(tree, options);
+  if (options.samples < 1) throw std::invalid_argument("vmap: a point must ask at least one segment");
+  const auto placed = place_shares(tree, links);
+  const std::vector<const Link*>& partial = placed.first;
+  std::vector<std::uint8_t> shares(placed.second);
+  const ShareMaker maker(tree, partial, options);
   for (std::size_t first = 0, end; first < partial.size(); first = end) {
     end = first;
     for (std::size_t cost = 0; end < partial.size() && cost < options.batch; ++end)

@@ -5,7 +5,8 @@
 namespace pointgi {
 
 struct PointShareOptions {
-  unsigned samples = 1;         ///< segments a point and link, 1 to 255; near leaves ask every pair
+  unsigned samples = 32; ///< segments a point, about: where it has more links that are partly visible, neighbours share
+                         ///< answers; near leaves ask every pair besides
   std::uint32_t seed = 1;       ///< of the choice of points
   std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
 };
