@@ -84,4 +84,12 @@ Program fmm_program(const char* file) {
   return {file, ""};
 }
 
+unsigned gather_room(unsigned k) {
+  return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
+}
+
+Program nearest_photons_program(unsigned k) {
+  return {"photon/nearest.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
+}
+
 } // namespace pointgi

@@ -63,6 +63,11 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 /// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
 
+/// Nearest photons of given places, nearest_of_places, for k up to this many.
+Program nearest_photons_program(unsigned k);
+/// Room for photons that a program is built with, to gather k of them: few sizes, or each k would be compiled anew.
+unsigned gather_room(unsigned k);
+
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);
 

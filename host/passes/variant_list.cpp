@@ -138,6 +138,9 @@ std::vector<ProgramUse> all_programs() {
   // Not for GPUs yet: their vectors of 8 lanes in arrays are more than a stack frame should be.
   for (const char* file : {"fmm/expand.cl", "fmm/m2l.cl", "fmm/near.cl"})
     uses.push_back({fmm_program(file), true, false});
+  // Nor gathering of photons, whose candidates stand in private memory.
+  for (const unsigned k : {64u, 512u, 1024u})
+    uses.push_back({nearest_photons_program(k), true, false});
   std::map<std::string, std::size_t> known;
   const auto add = [&](const Program& program, bool cpu, bool gpu) {
     const auto [at, is_new] = known.emplace(program.file + "\n" + program.options, uses.size());

@@ -1,6 +1,7 @@
 /* Probes: what the device itself makes of shared structs and small functions. For tests. */
 #include "lib/octree_descent.cl"
 #include "lib/rng.cl"
+#include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
 

@@ -1,5 +1,6 @@
 #include "host/passes/device_pools.h"
 #include "octree/ref/descend.h"
+#include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
 #include "tests/support/clouds.h"
