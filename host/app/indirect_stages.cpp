@@ -1,4 +1,5 @@
 #include "host/app/indirect_stages.h"
+#include "host/cloud/normal_field.h"
 #include "host/error.h"
 #include "host/passes/point_irradiance.h"
 #include <spdlog/spdlog.h>
@@ -43,6 +44,24 @@ void require_known_radiosity(const Scene& scene) {
     refuse("method = \"" + scene.radiosity.method + "\" is not in this version; it has \"fmm\"");
   if (scene.radiosity.direct_light != "shadow_rays")
     refuse("direct_light = \"" + scene.radiosity.direct_light + "\" is not in this version; it has \"shadow_rays\"");
+}
+
+std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
+                                                 StageLog& stages) {
+  if (!lighting.has_specular()) {
+    stages.skip("normals", "no specular material");
+    return std::nullopt;
+  }
+  stages.start("normals");
+  const auto slopes = fit_normal_field(points, [&](const Splat& splat) {
+    return lighting.materials[static_cast<std::size_t>(splat.material)].type != MATERIAL_DIFFUSE;
+  });
+  std::vector<cl_float4> texels(slopes.size());
+  for (std::size_t i = 0; i < slopes.size(); ++i)
+    std::copy_n(slopes[i].slope, 4, texels[i].s);
+  Buffer<cl_float4> field = session.upload(texels);
+  stages.finish(slopes.size(), "points");
+  return field;
 }
 
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const TraversalVariant& variant,

@@ -23,6 +23,11 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
                                   View<Splat> points, bool by_paths, StageLog& stages,
                                   const std::function<bool()>& stop);
 
+/// The normal field of the specular and glossy splats, as the device takes it (kernels/lib/pools.cl): the stage
+/// `normals`; absent where there are none, and the stage is skipped.
+std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
+                                                 StageLog& stages);
+
 /// Refuses settings of [radiosity] that this version does not have, before the work. Throws Error(input).
 void require_known_radiosity(const Scene& scene);
 

@@ -1,7 +1,6 @@
 #include "host/app/prepare.h"
 #include "host/app/default_view.h"
 #include "host/cloud/input_file.h"
-#include "host/error.h"
 #include "host/scene/merge_coincident.h"
 #include <numeric>
 #include <spdlog/spdlog.h>
@@ -14,14 +13,6 @@ bool is_scene_file(const std::string& file) {
 
 Scene load_any(const std::string& file, const std::vector<std::string>& overrides) {
   return is_scene_file(file) ? load_scene(file, overrides) : load_bare_cloud(file, overrides);
-}
-
-void refuse_unsupported(const Scene& scene) {
-  for (const MaterialSettings& material : scene.materials)
-    if (material.type != MaterialType::diffuse)
-      throw Error(ExitCode::input, material.place.text() + ": material \"" + material.name + "\": type \"" +
-                                       name_of(material.type) +
-                                       "\" cannot be rendered by this version; it renders \"diffuse\"");
 }
 
 namespace {

@@ -11,9 +11,6 @@ bool is_scene_file(const std::string& file);
 /// A scene file, or a bare cloud with a scene around it.
 Scene load_any(const std::string& file, const std::vector<std::string>& overrides);
 
-/// Throws Error(input) naming the first material that this version cannot render: never drawn wrong.
-void refuse_unsupported(const Scene& scene);
-
 /// The scene's splats as the device takes them.
 struct PlacedSplats {
   Frame frame;

@@ -149,7 +149,6 @@ ExitCode run_profile(const ProfileOptions& options) {
   Scene scene = load_any(options.input, options.overrides);
   if (says_something(scene.traversal, scene.octree))
     spdlog::info("[octree] and [traversal] of the scene do not narrow the variants: --filter does");
-  refuse_unsupported(scene);
   if (!options.output.empty()) require_writable(options.output);
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
 

@@ -145,7 +145,6 @@ Scene checked_scene(const RenderOptions& options) {
     const double factor = options.quality == "draft" ? 0.25 : 4.0;
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
   }
-  refuse_unsupported(scene);
   if (options.integrator != "path") require_known_radiosity(scene);
   // Before the work, not after it.
   require_writable_picture(output_of(options));
@@ -213,13 +212,15 @@ ExitCode run_render(const RenderOptions& options) {
   catch_interrupts();
   const IndirectLight indirect = run_indirect_stages(session, on_device, variant, scene, placed.frame, lighting,
                                                      points_of(pools), paths.has_value(), stages, interrupted);
+  const std::optional<Buffer<cl_float4>> field = normal_field_of(session, lighting, points_of(pools), stages);
   stages.skip("photon", "no specular material");
   if (scene.caustics.place)
     spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
   RenderRequest request{window, lighting, placed.frame, ids, variant, paths};
   request.irradiance = indirect.irradiance ? &*indirect.irradiance : nullptr;
+  request.normal_field = field ? &*field : nullptr;
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
-                       film_channels(request.has_indirect()),
+                       film_channels(request.has_indirect(), request.has_specular()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
   const bool written = render_picture(session, on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)

@@ -1,6 +1,7 @@
 #pragma once
 /// Which light paths the path tracer counts, in Heckbert's notation (method.md §1).
 #include "shared/render_types.h"
+#include <array>
 #include <optional>
 #include <string>
 
@@ -8,15 +9,20 @@ namespace pointgi {
 
 /// As RenderParams takes them.
 struct LightPaths {
-  pg_uint classes = ALL_PATH_CLASSES;     ///< bit k: paths of k surface points; the last bit: as many or more
-  pg_uint most_bounces = NO_BOUNCE_LIMIT; ///< surface points of a path at most
+  bool all = true;                         ///< every path counts; the states need not be asked
+  std::array<pg_uint, PATH_STATES> states; ///< the automaton (shared/render_types.h); reads from the eye on
+  pg_uint most_bounces = NO_BOUNCE_LIMIT;  ///< surface points of a path at most
+
+  /// Whether paths of these surfaces count: D and S, from the light to the eye.
+  bool counts(const std::string& surfaces) const;
 };
 
-/// `list` is one class or several with commas between them: L, then letters each with or without "+" (one or more of
-/// it), then E. "LE" is light seen directly, "LDE" direct light, "LDD+E" all light between surfaces, "LD+E" both.
-/// An empty list means all paths. `max_depth`: of the scene, surface points of a path at most.
-/// Throws Error(usage) for what is no class, for one with S (no specular material can be rendered yet) and for more
-/// than 30 D in a class.
+/// `list` is one class or several with commas between them: L, then the letters D (diffuse surface) and S (specular:
+/// mirror, glass, or by the lobe of a Phong surface), each with or without "+" (one or more of it) or "*" (any number,
+/// none too), then E. "LE" is light seen directly, "LDE" direct light, "LDD+E" all light between diffuse surfaces,
+/// "LD+S*E" all that the eye sees of these, directly or by way of specular surfaces, "LS+DE" caustics. An empty list
+/// means all paths. `max_depth`: of the scene, surface points of a path at most. Throws Error(usage) for what is no
+/// class, for more than 30 letters in one, and for classes that together are more than the automaton can hold.
 LightPaths light_paths(const std::string& list, const std::optional<int>& max_depth);
 
 } // namespace pointgi

@@ -38,9 +38,7 @@ enum Channel {
   c_variance_g,
   c_variance_b,
   c_id,
-  c_diffuse_r, // only where there is indirect light
-  c_diffuse_g,
-  c_diffuse_b
+  c_first_optional ///< Diffuse, then Specular, three each, as many of them as there are
 };
 
 /// Variance of the mean of `samples` radiances: that of one, by their squared differences from the mean, over their
@@ -55,10 +53,19 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
   const double scale = request.lighting.radiance.scale;
   for (int k = 0; k < 3; ++k) {
     const double direct = scale * (film[FILM_DIRECT + k] / samples);
-    const double diffuse = request.has_indirect() ? scale * (film[FILM_DIFFUSE + k] / samples) : 0.0;
-    set(c_r + k, direct + diffuse);
+    double all = direct;
+    int channel = c_first_optional + k;
+    const auto add = [&](bool is_there, int of_film) {
+      if (!is_there) return;
+      const double light = scale * (film[of_film + k] / samples);
+      set(channel, light);
+      all += light;
+      channel += 3;
+    };
+    add(request.has_indirect(), FILM_DIFFUSE);
+    add(request.has_specular(), FILM_SPECULAR);
+    set(c_r + k, all);
     set(c_direct_r + k, direct);
-    if (request.has_indirect()) set(c_diffuse_r + k, diffuse);
     set(c_variance_r + k, variance_of_mean(scale * scale * double{film[FILM_SPREAD + k]}, samples));
   }
   const float hits = film[FILM_COVERAGE];
@@ -86,7 +93,7 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
 
 } // namespace
 
-std::vector<ChannelName> film_channels(bool indirect) {
+std::vector<ChannelName> film_channels(bool indirect, bool specular) {
   std::vector<ChannelName> names;
   for (const char* name :
        {"R",   "G",   "B",   "A",   "Direct.R", "Direct.G", "Direct.B", "Albedo.R",   "Albedo.G",   "Albedo.B",
@@ -95,17 +102,19 @@ std::vector<ChannelName> film_channels(bool indirect) {
   names.push_back({"PointId", true});
   for (const char* name : {"Diffuse.R", "Diffuse.G", "Diffuse.B"})
     if (indirect) names.push_back({name, false});
+  for (const char* name : {"Specular.R", "Specular.G", "Specular.B"})
+    if (specular) names.push_back({name, false});
   return names;
 }
 
 namespace {
 
 /// A finished tile into its band and the totals.
-void resolve_tile(const std::vector<float>& film, int column, int columns, const RenderRequest& request,
-                  pg_uint samples, Band& band, RenderTotals& totals) {
+void resolve_tile(const std::vector<float>& film, std::size_t film_channels, int column, int columns,
+                  const RenderRequest& request, pg_uint samples, Band& band, RenderTotals& totals) {
   for (int y = 0; y < band.rows; ++y)
     for (int x = 0; x < columns; ++x) {
-      const float* pixel = &film[(static_cast<std::size_t>(y) * columns + x) * FILM_CHANNELS];
+      const float* pixel = &film[(static_cast<std::size_t>(y) * columns + x) * film_channels];
       resolve_pixel(pixel, request, static_cast<float>(samples), static_cast<std::size_t>(y) * band.width + column + x,
                     band);
       totals.rays += static_cast<std::uint64_t>(pixel[FILM_RAYS]);
@@ -121,8 +130,8 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
   TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
-                     request.irradiance);
-  const std::size_t channels = film_channels(request.has_indirect()).size();
+                     request.irradiance, request.normal_field);
+  const std::size_t channels = film_channels(request.has_indirect(), request.has_specular()).size();
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;
@@ -147,7 +156,8 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
         progress((static_cast<double>(row) * width + (column + columns * of_tile) * rows) /
                  (static_cast<double>(width) * height));
       }
-      resolve_tile(tiles.film(columns, rows), column, columns, request, tiles.samples(), band, totals);
+      resolve_tile(tiles.film(columns, rows), tiles.film_channels(), column, columns, request, tiles.samples(), band,
+                   totals);
       column += columns;
       most_columns = longest < 0.5 * launch_seconds   ? std::min(most_columns * 2, 4096)
                      : longest > 2.0 * launch_seconds ? std::max(most_columns / 2, 1)

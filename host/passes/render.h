@@ -28,8 +28,8 @@ struct RenderTotals {
 };
 
 /// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist. `indirect`: light
-/// from surface to surface is among them.
-std::vector<ChannelName> film_channels(bool indirect);
+/// from surface to surface is among them; `specular`: what is seen by way of specular surfaces is.
+std::vector<ChannelName> film_channels(bool indirect, bool specular);
 
 struct RenderRequest {
   PixelWindow window;
@@ -37,10 +37,12 @@ struct RenderRequest {
   const Frame& frame;
   View<std::uint32_t> point_ids; ///< id to write for each point of the pool
   TraversalVariant variant;
-  std::optional<LightPaths> paths;               ///< by path tracing, of these; else direct light and `irradiance`
-  const Buffer<cl_float4>* irradiance = nullptr; ///< of each point of the pool, from surfaces; null: none
+  std::optional<LightPaths> paths;                 ///< by path tracing, of these; else direct light and `irradiance`
+  const Buffer<cl_float4>* irradiance = nullptr;   ///< of each point of the pool, from surfaces; null: none
+  const Buffer<cl_float4>* normal_field = nullptr; ///< slopes of each point's normal; null: nothing is specular
 
   bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
+  bool has_specular() const { return normal_field != nullptr; }
 };
 
 /// Renders the window's rows from the top and hands finished bands to `take`, after each launch `progress` (share done,

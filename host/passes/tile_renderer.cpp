@@ -1,24 +1,29 @@
 #include "host/passes/tile_renderer.h"
 #include "shared/traversal_types.h"
+#include <algorithm>
 
 namespace pointgi {
 
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
-                           const Buffer<cl_float4>* irradiance)
+                           const Buffer<cl_float4>* irradiance, const Buffer<cl_float4>* normal_field)
     : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping),
       eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
-      irradiance_(paths ? nullptr : irradiance) {
+      irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
-  const SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment,
-                               irradiance_ != nullptr};
+  SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment,
+                         irradiance_ != nullptr};
+  if (normal_field_ != nullptr) {
+    features.specular = true;
+    features.glass = lighting.has_type(MATERIAL_GLASS);
+    features.phong = lighting.has_type(MATERIAL_PHONG);
+  }
   if (paths) {
-    params_.path_classes = paths->classes;
+    std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
     params_.most_bounces = paths->most_bounces;
   }
   const Program eye_rays = eye_rays_program(variant),
-                shade = paths ? path_program(variant, features, paths->classes != ALL_PATH_CLASSES)
-                              : shade_program(variant, features);
+                shade = paths ? path_program(variant, features, !paths->all) : shade_program(variant, features);
   eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");
   shade_ = session.kernel(shade.file, shade.options, paths ? "path_pixels" : "shade_pixels");
   device_params_ = session.upload(&params_, 1);
@@ -29,8 +34,8 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
 
 TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint first_sample) {
   const auto width = static_cast<std::size_t>(columns), height = static_cast<std::size_t>(rows);
-  if (film_.size < width * height * FILM_CHANNELS) {
-    film_ = session_.allocate<float>(width * height * FILM_CHANNELS);
+  if (film_.size < width * height * film_channels()) {
+    film_ = session_.allocate<float>(width * height * film_channels());
     hits_ = session_.allocate<EyeHits>(width * height);
   }
   const auto parts = [](std::size_t whole, std::size_t size) { return (whole + size - 1) / size; };
@@ -47,8 +52,11 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
     return session_.launch(shade_, pixels(shade_group_), pools..., device_params_, materials_, delta_, emitters_, hits_,
                            film_, number(x), number(y), number(columns), number(rows), number(first_sample));
   };
-  seconds.shade = irradiance_ != nullptr ? shade(pools_.nodes, pools_.leaves, pools_.points, *irradiance_)
-                                         : shade(pools_.nodes, pools_.leaves, pools_.points);
+  const auto with_field = [&](const auto&... pools) {
+    return normal_field_ != nullptr ? shade(pools..., *normal_field_) : shade(pools...);
+  };
+  seconds.shade = irradiance_ != nullptr ? with_field(pools_.nodes, pools_.leaves, pools_.points, *irradiance_)
+                                         : with_field(pools_.nodes, pools_.leaves, pools_.points);
   return seconds;
 }
 
@@ -57,7 +65,7 @@ std::vector<EyeHits> TileRenderer::hits(int columns, int rows) {
 }
 
 std::vector<float> TileRenderer::film(int columns, int rows) {
-  return session_.download(film_, static_cast<std::size_t>(columns) * rows * FILM_CHANNELS);
+  return session_.download(film_, static_cast<std::size_t>(columns) * rows * film_channels());
 }
 
 } // namespace pointgi

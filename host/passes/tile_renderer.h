@@ -17,17 +17,21 @@ struct TileSeconds {
 class TileRenderer {
 public:
   /// `side`: of the root cube, world units; `paths`: by path tracing; else
-  /// `irradiance`, of each point, is reflected too where it is there. Builds the programs where they are not built yet.
+  /// `irradiance`, of each point, is reflected too where it is there. Without a `normal_field` no surface is specular:
+  /// all but diffuse ones look black. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
-               const Buffer<cl_float4>* irradiance = nullptr);
+               const Buffer<cl_float4>* irradiance = nullptr, const Buffer<cl_float4>* normal_field = nullptr);
 
   pg_uint samples() const { return params_.samples; }
 
   /// One pass of up to 32 samples over a tile of the image; returns the device's seconds.
   TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
 
-  /// The film of the last tile, FILM_CHANNELS a pixel: sums over the samples of all passes since the first.
+  /// Scalars a pixel of the film: FILM_CHANNELS, or FILM_CHANNELS_SPECULAR with a normal field.
+  std::size_t film_channels() const { return normal_field_ != nullptr ? FILM_CHANNELS_SPECULAR : FILM_CHANNELS; }
+
+  /// The film of the last tile, film_channels() a pixel: sums over the samples of all passes since the first.
   std::vector<float> film(int columns, int rows);
 
   /// What the eye rays of its last pass met, pixel after pixel; GRID_RAYS a pixel whatever the number of samples.
@@ -44,7 +48,7 @@ private:
   Buffer<Material> materials_;
   Buffer<DeltaLight> delta_;
   Buffer<Emitter> emitters_;
-  const Buffer<cl_float4>* irradiance_;
+  const Buffer<cl_float4>*irradiance_, *normal_field_;
   Buffer<EyeHits> hits_;
   Buffer<float> film_;
 };

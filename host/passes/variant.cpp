@@ -23,7 +23,8 @@ std::string group_options(WorkGroup group) {
 std::string feature_options(const SceneFeatures& features) {
   return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
          (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
-         (features.radiosity ? " -D HAS_RADIOSITY" : "");
+         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.specular ? " -D HAS_SPECULAR" : "") +
+         (features.glass ? " -D HAS_GLASS" : "") + (features.phong ? " -D HAS_PHONG" : "");
 }
 
 } // namespace

@@ -31,6 +31,9 @@ struct SceneFeatures {
   bool emitters = false;
   bool environment = false;
   bool radiosity = false; ///< of the picture: points have irradiance from surfaces
+  bool specular = false;  ///< some splats are no diffuse ones: rays go on, normals are a field
+  bool glass = false;     ///< some are glass; specular too then
+  bool phong = false;     ///< some have a Phong lobe; specular too then
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.

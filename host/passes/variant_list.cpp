@@ -154,9 +154,11 @@ std::vector<ProgramUse> all_programs() {
     add(eye_rays_program(v), cpu, gpu);
     add(shade_program(v, {}), cpu, gpu);
     add(shade_program(v, {true, true, true, true}), cpu, gpu);
+    add(shade_program(v, {true, true, true, true, true, true, true}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(path_program(v, {true, true, true}, true), cpu, gpu);
+    add(path_program(v, {true, true, true, false, true, true, true}, true), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);
   }
   return uses;

@@ -61,6 +61,30 @@ struct Axes {
   Vector3d right, up, forward;
 };
 
+pg_uint device_type(MaterialType type) {
+  switch (type) {
+  case MaterialType::mirror:
+    return MATERIAL_MIRROR;
+  case MaterialType::glass:
+    return MATERIAL_GLASS;
+  case MaterialType::phong:
+    return MATERIAL_PHONG;
+  default:
+    return MATERIAL_DIFFUSE;
+  }
+}
+
+Material device_material(const MaterialSettings& settings, const Frame& frame, double scale) {
+  Material material{};
+  copy3(settings.emission / scale, material.emission);
+  material.type = device_type(settings.type);
+  copy3(settings.type == MaterialType::mirror ? settings.reflectance : settings.specular, material.specular);
+  material.exponent = static_cast<float>(settings.exponent);
+  copy3(settings.absorption * frame.side, material.absorption);
+  material.ior = static_cast<float>(settings.ior);
+  return material;
+}
+
 Axes camera_axes(const Scene& scene) {
   const Vector3d forward = (scene.camera.look_at - scene.camera.position).normalized();
   const Vector3d right = forward.cross(up_of(scene)).normalized();
@@ -136,14 +160,14 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   std::vector<double> power(scene.materials.size()); // luminance of each material's emission
   const Vector3d luminance(0.2126, 0.7152, 0.0722);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    Material material{};
-    copy3(scene.materials[m].emission / scale, material.emission);
-    result.materials.push_back(material);
+    result.materials.push_back(device_material(scene.materials[m], frame, scale));
     power[m] = luminance.dot(scene.materials[m].emission) / scale;
   }
   const auto emitted = [&](std::size_t p) {
     return power[static_cast<std::size_t>(points[p].material)] * points[p].area;
   };
+  for (std::size_t p = 0; p < points.size; ++p)
+    result.types |= 1u << result.materials[static_cast<std::size_t>(points[p].material)].type;
   for (std::size_t p = 0; p < points.size; ++p)
     if (emitted(p) > 0.0) result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
   accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
@@ -160,6 +184,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   params.samples = static_cast<pg_uint>(scene.render.spp);
   params.seed = scene.render.seed;
   params.jitter = scene.render.jitter ? 1u : 0u;
+  params.most_bounces = scene.render.max_depth ? static_cast<pg_uint>(*scene.render.max_depth) : NO_BOUNCE_LIMIT;
   params.delta_lights = static_cast<pg_uint>(result.delta.size());
   params.emitters = static_cast<pg_uint>(result.emitters.size());
   result.has_environment = scene.environment.maxCoeff() > 0.0;

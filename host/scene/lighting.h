@@ -19,6 +19,11 @@ struct DeviceLighting {
   std::vector<DeltaLight> delta;   ///< point and directional lights with power > 0
   std::vector<Emitter> emitters;   ///< splats of emitting materials
   bool has_environment = false;
+
+  /// Whether some splat's material, not only some material, is of this type.
+  bool has_type(pg_uint type) const { return type < 32 && ((types >> type) & 1u) != 0; }
+  bool has_specular() const { return (types & ~(1u << MATERIAL_DIFFUSE)) != 0; }
+  pg_uint types = 0; ///< bit MATERIAL_...: splats of that type are there
 };
 
 /// `points` is the octree's point pool: emitters refer to it.

@@ -22,18 +22,25 @@ std::uint32_t index_of(const Scene& scene, const std::string& name) {
   return static_cast<std::uint32_t>(at - scene.materials.begin());
 }
 
-/// Diffuse reflectance of each point: the material's albedo, else the points' colours, else grey.
+/// Diffuse reflectance of each point: the material's albedo, else the points' colours, else grey; of a Phong material
+/// no more than its lobe leaves; of mirrors and glass none.
 void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
+  if (material.type == MaterialType::mirror || material.type == MaterialType::glass) {
+    cloud.colour.assign(cloud.size(), Eigen::Vector3f::Zero());
+    return;
+  }
+  const Eigen::Vector3f most = (Vector3d::Ones() - material.specular).cast<float>();
   if (!material.albedo && !cloud.colour.empty()) {
     for (Eigen::Vector3f& c : cloud.colour)
       for (int k = 0; k < 3; ++k) {
         const float value = std::clamp(c[k], 0.0f, 1.0f);
         c[k] = material.colour_space == ColourSpace::srgb ? srgb_to_linear(value) : value;
+        c[k] = std::min(c[k], most[k]);
       }
     return;
   }
   const Vector3d albedo = material.albedo.value_or(Vector3d::Constant(default_albedo));
-  cloud.colour.assign(cloud.size(), albedo.cast<float>());
+  cloud.colour.assign(cloud.size(), albedo.cast<float>().cwiseMin(most));
 }
 
 void place(PointCloud& cloud, const CloudSettings& settings) {

@@ -27,7 +27,7 @@ __kernel void direct_irradiance_of_points(POOL_PARAMS, __constant RenderParams* 
   float3 sum = (float3)(0.0f);
 #if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
   const Lights lights = {params, materials, delta_lights, emitters};
-  const Surface surface = surface_of_point(POOL_ARGS, point);
+  Surface surface = surface_of_point(POOL_ARGS, point);
   float rays = 0.0f;
   for (uint k = 0u; k < samples; ++k) {
     /* A point takes the place of a pixel in the random numbers; 0x40000000 keeps it apart from the picture's. */

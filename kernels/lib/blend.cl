@@ -21,6 +21,11 @@ typedef struct Surface {
   uint splat;    /* the disc hit first */
   uint material; /* its material */
   bool front;    /* the ray met the front side */
+#ifdef HAS_PHONG
+  float3 mirrored;  /* where the ray would go on, were the surface a mirror */
+  float exponent;   /* of the lobe about that */
+  float3 highlight; /* see direct_irradiance */
+#endif
 } Surface;
 
 typedef struct Blend {
@@ -35,7 +40,19 @@ typedef struct Blend {
   uint splat, material;
 } Blend;
 
-static inline void blend_add(POOL_PARAMS, Blend* b, uint splat, float t, float q, float3 normal, float3 albedo) {
+#ifdef HAS_SPECULAR
+/* A splat's own normal changes over its disc (method.md section 6). */
+static inline float3 field_normal(POOL_PARAMS, Ray ray, uint splat, float t, float3 normal) {
+  const float4 f = field_pool[splat];
+  const float3 off = fma((float3)(t), ray.direction, ray.origin - pool_point_texel(POINT_TEXELS * splat).xyz);
+  float3 a, b;
+  tangents(normal, &a, &b);
+  const float u = dot3(off, a), v = dot3(off, b);
+  return normalize3(normal + (u * f.x + v * f.z) * a + (u * f.y + v * f.w) * b);
+}
+#endif
+
+static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t, float q, float3 normal, float3 albedo) {
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
   /* A tiny floor keeps a lone disc visible out to its very rim. */
@@ -43,6 +60,9 @@ static inline void blend_add(POOL_PARAMS, Blend* b, uint splat, float t, float q
   const float depth = 1.0f - (t - b->t_first) / (b->t_end - b->t_first);
   const float w = rim * rim * depth;
   b->weight += w;
+#ifdef HAS_SPECULAR
+  normal = field_normal(POOL_ARGS, ray, splat, t, normal);
+#endif
   b->normal += w * normal;
   b->albedo += w * albedo;
 #ifdef HAS_RADIOSITY
@@ -67,7 +87,7 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float
   b->radius = centre.w;
   b->splat = splat;
   b->material = (uint)normal.w;
-  blend_add(POOL_ARGS, b, splat, t, q, normal.xyz, albedo);
+  blend_add(POOL_ARGS, b, ray, splat, t, q, normal.xyz, albedo);
 }
 
 static inline void blend_end(const Blend* b, Ray ray, Surface* s) {

@@ -1,5 +1,6 @@
 /* Light that reaches a surface straight from its source, by shadow rays.
  *   HAS_DELTA_LIGHTS, HAS_EMITTERS, HAS_ENVIRONMENT  defined only where the scene has such lights */
+#include "lib/phong.cl"
 #include "lib/sampling.cl"
 #include "lib/traversal.cl"
 
@@ -128,8 +129,9 @@ static inline bool sample_environment(const Surface* s, Lights lights, float4 u,
 
 /* Irradiance H [W/m2, scaled] of the surface from all lights, one estimate; the mean over samples converges to it.
  * Adds the number of shadow rays traced to *rays. One place traces them all: the walk stands once in the code, and
- * work-items that shade different lights walk together. */
-static inline float3 direct_irradiance(POOL_PARAMS, const Surface* s, Lights lights, SampleId id, float* rays) {
+ * work-items that shade different lights walk together. Where there are Phong surfaces, s->highlight grows by what their
+ * lobe makes of point and directional lights, which no ray that it sends out can meet. */
+static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, SampleId id, float* rays) {
   float3 sum = (float3)(0.0f);
   uint delta_samples = 0u, emitter_samples = 0u, environment_samples = 0u;
 #ifdef HAS_DELTA_LIGHTS
@@ -157,8 +159,13 @@ static inline float3 direct_irradiance(POOL_PARAMS, const Surface* s, Lights lig
     if (i == delta_samples + emitter_samples)
       faces = sample_environment(s, lights, u, &light);
 #endif
-    if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays))
+    if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays)) {
       sum += light.irradiance;
+#ifdef HAS_PHONG
+      if (i < delta_samples)
+        s->highlight += light.irradiance * phong_lobe(dot3(light.towards, s->mirrored), s->exponent);
+#endif
+    }
   }
   return sum;
 }

@@ -62,9 +62,19 @@ static inline uint pool_component(uint4 texel, uint i) {
 
 #ifdef HAS_RADIOSITY
 /* Beside the points, what other surfaces send them: irradiance_pool[i].xyz [W/m2, scaled as RenderParams]. */
-#define POOL_ARGS OCTREE_ARGS, irradiance_pool
-#define POOL_PARAMS OCTREE_PARAMS, const __global float4 *restrict irradiance_pool
+#define LIT_ARGS OCTREE_ARGS, irradiance_pool
+#define LIT_PARAMS OCTREE_PARAMS, const __global float4 *restrict irradiance_pool
 #else
-#define POOL_ARGS OCTREE_ARGS
-#define POOL_PARAMS OCTREE_PARAMS
+#define LIT_ARGS OCTREE_ARGS
+#define LIT_PARAMS OCTREE_PARAMS
+#endif
+
+#ifdef HAS_SPECULAR
+/* And how their normals change over their discs: n(u, v) = n + u (f.x a + f.y b) + v (f.z a + f.w b), f = field_pool[i],
+ * a and b the tangents of n (host/cloud/normal_field.h). */
+#define POOL_ARGS LIT_ARGS, field_pool
+#define POOL_PARAMS LIT_PARAMS, const __global float4 *restrict field_pool
+#else
+#define POOL_ARGS LIT_ARGS
+#define POOL_PARAMS LIT_PARAMS
 #endif

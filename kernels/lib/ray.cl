@@ -29,10 +29,18 @@ static inline bool ray_meets_root(Ray ray, float* t_enter, float* t_leave) {
 typedef struct ShadowEnds {
   float3 origin_normal, target_normal; /* facing the ray or not: the side does not matter, the splat's own normal does */
   float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
+#ifdef HAS_SPECULAR
+  uint origin_material; /* 1 + material of the surface at the origin: discs of others are no part of it; 0: all may be */
+  uint origin_back;     /* 1: the ray goes off on the back side of the surface there, into glass */
+  uint medium;          /* 1 + material of the glass that the ray is in; 0: none */
+#endif
 } ShadowEnds;
 
 static inline ShadowEnds free_ends(void) {
-  const ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+  ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+#ifdef HAS_SPECULAR
+  ends.origin_material = ends.origin_back = ends.medium = 0u;
+#endif
   return ends;
 }
 
@@ -48,9 +56,22 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float dis
  * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
 #define ARRIVAL_DISTANCE 0.1f
 
-static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float3 normal) {
-  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal) &&
-         !(dot3(normal, direction) < 0.0f && t > ARRIVAL_DISTANCE * radius);
+/* normal.w: the disc's material. A ray that goes into glass passes by the discs whose fronts it meets near there, and
+ * arrives at backs: all that was said of sides is turned round. It has no coincident other side: that of a sheet of glass
+ * lets it out again. */
+static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float4 normal) {
+  float along = dot3(normal.xyz, direction);
+#ifdef HAS_SPECULAR
+  if (ends.origin_material != 0u && (uint)normal.w + 1u != ends.origin_material)
+    return false;
+  if (ends.origin_back != 0u) {
+    along = -along;
+    if (dot3(normal.xyz, ends.origin_normal) < 0.0f)
+      return false;
+  }
+#endif
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal.xyz) &&
+         !(along < 0.0f && t > ARRIVAL_DISTANCE * radius);
 }
 
 static inline bool belongs_to_ends(ShadowEnds ends, float t_max, float t, float radius, float3 normal) {

@@ -1,8 +1,11 @@
 /* The traversal interface, on the form of the octree that was chosen: trace_closest, trace_any and trace_blended;
  * trace_closest_from, which alone pays for the end it looks at.
- *   BOUNCED_RAYS  defined by programs whose viewers' rays also start on surfaces
+ *   BOUNCED_RAYS  defined by programs whose viewers' rays also start on surfaces; all are where HAS_SPECULAR
  *   FORM_STEP  cells, Begin-End pool, extra splats: kernels/lib/step_traversal.cl
  *   FORM_WIDE  tight child boxes, blocks of splats: kernels/lib/wide_traversal.cl */
+#if defined(HAS_SPECULAR) && !defined(BOUNCED_RAYS)
+#define BOUNCED_RAYS
+#endif
 #include "lib/blend.cl"
 #include "lib/pools.cl"
 #if TRAVERSAL_FORM == FORM_WIDE
@@ -45,6 +48,11 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, fl
   for (int k = 0; k < MAX_RIMS; ++k) {
     if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
       break;
+#ifdef HAS_SPECULAR
+    /* From inside glass its backs are what there is to see. */
+    if ((uint)pool_point_texel(POINT_TEXELS * hit.splat + 1u).w + 1u == ends.medium)
+      break;
+#endif
     *rays += 1.0f;
     if (!sticks_out(POOL_ARGS, ray, ends, pool_point_texel(POINT_TEXELS * hit.splat)))
       break;

@@ -199,12 +199,33 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, lanes_f 
          ((distance < COINCIDENT) & (cosine < -SELF_HIT_COSINE));
 }
 
+#ifndef HAS_SPECULAR
 /* belongs_to_origin in lanes. */
 static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
   const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
   return lanes_of_end(ends.origin_normal, ends.origin_radius, h->t, h) &
          ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
 }
+#define LANES_OF_ORIGIN(h, met) lanes_of_origin(ends, ray.direction, h)
+#else
+/* belongs_to_origin of the lanes that are met, one after another: few are, near the start of a ray, and blocks do not
+ * hold materials. */
+static inline lanes_i lanes_of_origin(POOL_PARAMS, ShadowEnds ends, float3 direction, const BlockHits* h, lanes_i met) {
+  float t_of[WIDE_LANES];
+  float belongs[WIDE_LANES];
+  store_lanes(select((lanes_f)(INFINITY), h->t, met), t_of);
+  for (uint lane = 0u; lane < WIDE_LANES; ++lane) {
+    belongs[lane] = 0.0f;
+    if (t_of[lane] < INFINITY) {
+      const uint i = POINT_TEXELS * (h->first + lane);
+      const float radius = pool_point_texel(i).w;
+      belongs[lane] = belongs_to_origin(ends, direction, t_of[lane], radius, pool_point_texel(i + 1u)) ? 1.0f : 0.0f;
+    }
+  }
+  return load_lanes(belongs) > 0.0f;
+}
+#define LANES_OF_ORIGIN(h, met) lanes_of_origin(POOL_ARGS, ends, ray.direction, h, met)
+#endif
 
 /* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
 static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
@@ -218,7 +239,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       const lanes_i met = h.inside & (h.t > ray.t_min) &
                           ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
       if (any_lane(met)) {
-        const lanes_i nearer = met & ~lanes_of_origin(ends, ray.direction, &h);
+        const lanes_i nearer = met & ~LANES_OF_ORIGIN(&h, met);
         if (any_lane(nearer)) {
           const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
           best.t = smallest_lane(t);
@@ -264,7 +285,7 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
         for (uint lane = 0u; lane < WIDE_LANES; ++lane)
           if (t_of[lane] > -INFINITY) {
             const uint i = h.first + lane;
-            blend_add(POOL_ARGS, blend, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u).xyz,
+            blend_add(POOL_ARGS, blend, ray, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u).xyz,
                       pool_point_texel(POINT_TEXELS * i + 2u).xyz);
           }
       }

@@ -5,6 +5,14 @@
 
 #define INVERSE_PI 0.31830989f
 
+/* Uses of random numbers at a vertex, after those of kernels/lib/direct_light.cl (1 to 3). */
+#define DIMENSION_BOUNCE 4u
+#define DIMENSION_ROULETTE 5u
+#define DIMENSION_SCATTER 6u
+
+/* Bounces that no roulette ends. */
+#define SURE_BOUNCES 3u
+
 #if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
 #define HAS_LIGHT
 #endif
@@ -40,6 +48,18 @@ static inline void add_diffuse(float3 radiance, float* sums) {
   sums[FILM_DIFFUSE + 2] += radiance.z;
 }
 
+/* What the ray finds that meets nothing, or a surface that shines itself. */
+static inline float3 seen_light(Lights lights, bool met, const Surface* s) {
+  if (!met)
+    return load3_constant(lights.params->environment);
+#ifdef HAS_EMITTERS
+  if (s->front)
+    return load3(lights.materials[s->material].emission);
+#endif
+  return (float3)(0.0f);
+}
+
+#ifndef HAS_SPECULAR /* else kernels/render/specular_sample.cl */
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
@@ -73,3 +93,4 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #endif
   return point;
 }
+#endif

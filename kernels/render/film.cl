@@ -1,14 +1,24 @@
 /* From the 32 samples of a pixel to its film. */
 #include "shared/render_types.h"
 
+/* Sums of a sample: those of the film's first FILM_SUMS channels, then, where there is any, FILM_SPECULAR's three. */
+#ifdef HAS_SPECULAR
+#define SUM_SPECULAR FILM_SUMS
+#define SAMPLE_SUMS (FILM_SUMS + 3)
+#define FILM_STRIDE FILM_CHANNELS_SPECULAR
+#else
+#define SAMPLE_SUMS FILM_SUMS
+#define FILM_STRIDE FILM_CHANNELS
+#endif
+
 /* What the work-items of one pixel leave for each other. */
 typedef struct PixelSamples {
-  float sums[FILM_SUMS][GRID_RAYS];
+  float sums[SAMPLE_SUMS][GRID_RAYS];
   uint points[GRID_RAYS];
 } PixelSamples;
 
 static inline void keep_sample(const float* sums, uint point, uint lane, __local PixelSamples* samples) {
-  for (int c = 0; c < FILM_SUMS; ++c)
+  for (int c = 0; c < SAMPLE_SUMS; ++c)
     samples->sums[c][lane] = sums[c];
   samples->points[lane] = point;
 }
@@ -21,27 +31,55 @@ static inline float sum_of(const __local float* of) {
   return sum;
 }
 
+/* All light of one colour that sample i brings. */
+static inline float radiance_of(const __local PixelSamples* samples, uint colour, int i) {
+  const float radiance = samples->sums[FILM_DIRECT + colour][i] + samples->sums[FILM_DIFFUSE + colour][i];
+#ifdef HAS_SPECULAR
+  return radiance + samples->sums[SUM_SPECULAR + colour][i];
+#else
+  return radiance;
+#endif
+}
+
+/* The film's sum of the same. */
+static inline float radiance_of_film(const __global float* pixel, uint colour) {
+#ifdef HAS_SPECULAR
+  return pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour] + pixel[FILM_SPECULAR + colour];
+#else
+  return pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour];
+#endif
+}
+
 /* Radiance of one colour, and its spread: of this pass about its own mean, then joined with that of the passes before
  * (Chan, Golub and LeVeque, "Updating formulae", 1979). Sums of squares would lose a small spread about a large mean. */
 static inline void add_radiance_to_film(const __local PixelSamples* samples, uint colour, float before, float count,
                                         __global float* pixel) {
-  const __local float* direct_of = samples->sums[FILM_DIRECT + colour];
-  const __local float* diffuse_of = samples->sums[FILM_DIFFUSE + colour];
-  float direct = sum_of(direct_of), diffuse = sum_of(diffuse_of), spread = 0.0f;
-  const float mean = (direct + diffuse) / count;
+  float direct = sum_of(samples->sums[FILM_DIRECT + colour]), diffuse = sum_of(samples->sums[FILM_DIFFUSE + colour]);
+  float spread = 0.0f, all = direct + diffuse;
+#ifdef HAS_SPECULAR
+  float specular = sum_of(samples->sums[SUM_SPECULAR + colour]);
+  all += specular;
+#endif
+  const float mean = all / count;
   for (int i = 0; i < (int)count; ++i) {
-    const float off = direct_of[i] + diffuse_of[i] - mean;
+    const float off = radiance_of(samples, colour, i) - mean;
     spread += off * off;
   }
   if (before > 0.0f) {
-    const float mean_before = (pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour]) / before;
+    const float mean_before = radiance_of_film(pixel, colour) / before;
     const float apart = mean - mean_before;
     spread += pixel[FILM_SPREAD + colour] + apart * apart * (before * count / (before + count));
     direct += pixel[FILM_DIRECT + colour];
     diffuse += pixel[FILM_DIFFUSE + colour];
+#ifdef HAS_SPECULAR
+    specular += pixel[FILM_SPECULAR + colour];
+#endif
   }
   pixel[FILM_DIRECT + colour] = direct;
   pixel[FILM_DIFFUSE + colour] = diffuse;
+#ifdef HAS_SPECULAR
+  pixel[FILM_SPECULAR + colour] = specular;
+#endif
   pixel[FILM_SPREAD + colour] = spread;
 }
 

@@ -2,6 +2,7 @@
  * are those of kernels/render/shade.cl, and with the paths LE and LDE alone the picture is the same to the bit. A
  * work-item follows its path to the end: paths of a group end at different bounces, which CPU devices do not mind. */
 #include "render/path_sample.cl"
+#include "render/specular_path_sample.cl"
 #include "render/film.cl"
 #include "render/group.cl"
 
@@ -16,8 +17,8 @@ void path_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Ma
   const size_t at = item.row * (size_t)columns + item.column;
   const Lights lights = {params, materials, delta_lights, emitters};
   const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + item.lane, params->seed};
-  float sums[FILM_SUMS];
-  for (int c = 0; c < FILM_SUMS; ++c)
+  float sums[SAMPLE_SUMS];
+  for (int c = 0; c < SAMPLE_SUMS; ++c)
     sums[c] = 0.0f;
   uint point = FILM_NO_POINT;
   if (in_tile && id.sample < params->samples) {
@@ -31,5 +32,5 @@ void path_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Ma
   barrier(CLK_LOCAL_MEM_FENCE);
   if (in_tile)
     add_to_film(samples_of + item.pixel, item.lane, first_sample, min(params->samples - first_sample, (uint)GRID_RAYS),
-                film + FILM_CHANNELS * at);
+                film + FILM_STRIDE * at);
 }

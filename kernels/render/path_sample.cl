@@ -3,28 +3,32 @@
  * rays (kernels/lib/direct_light.cl), and the path goes on in a direction drawn by the cosine: rho/pi cos / (cos/pi) =
  * rho. Emission and environment count where a camera's ray meets them; where a bounced ray does, the shadow rays of the
  * surface before have counted them. No sample is clamped: what is noisy shows in the variance.
- *   PATH_CLASSES  defined only where params->path_classes leaves some paths out */
+ *   PATH_CLASSES  defined only where params->path_states leaves some paths out */
 #define BOUNCED_RAYS
 #include "render/eye_sample.cl"
 
-/* Uses of random numbers at a vertex, after those of kernels/lib/direct_light.cl (1 to 3). */
-#define DIMENSION_BOUNCE 4u
-#define DIMENSION_ROULETTE 5u
-
-/* Bounces that no roulette ends. */
-#define SURE_BOUNCES 3u
 /* A path survives with the probability of its surface's largest albedo, so the strongest colour keeps its weight. Less
  * than 1, or a path between white walls would never end. */
 #define LONGEST_SURVIVAL 0.995f
 
-/* Whether paths with this many surface points count. */
-static inline bool path_counts(__constant RenderParams* params, uint surfaces) {
 #ifdef PATH_CLASSES
-  return ((params->path_classes >> min(surfaces, LAST_PATH_CLASS)) & 1u) != 0u;
-#else
-  return true;
-#endif
+/* Whether a path counts that ends in light after the surfaces that led to `state`; whether some longer one does. */
+static inline bool path_counts(__constant RenderParams* params, uint state) {
+  return (params->path_states[state] & PATH_COUNTS) != 0u;
 }
+static inline bool path_goes_on(__constant RenderParams* params, uint state) {
+  return (params->path_states[state] & PATH_GOES_ON) != 0u;
+}
+/* The state after one more surface. */
+static inline uint path_after(__constant RenderParams* params, uint state, bool specular) {
+  const uint entry = params->path_states[state];
+  return specular ? PATH_AFTER_S(entry) : PATH_AFTER_D(entry);
+}
+#else
+#define path_counts(params, state) true
+#define path_goes_on(params, state) true
+#define path_after(params, state, specular) 0u
+#endif
 
 /* The ray that a path goes on with. It starts where shadow rays do (in_light). */
 static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
@@ -52,17 +56,6 @@ static inline bool survives(const Surface* s, SampleId id, uint surfaces, float3
   return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
 }
 
-/* What an eye ray finds before any light is reflected (LE). */
-static inline float3 seen_light(Lights lights, bool met, const Surface* s) {
-  if (!met)
-    return load3_constant(lights.params->environment);
-#ifdef HAS_EMITTERS
-  if (s->front)
-    return load3(lights.materials[s->material].emission);
-#endif
-  return (float3)(0.0f);
-}
-
 /* Without a branch, as an address that is chosen would put the sums into memory. */
 static inline void add_radiance(float3 radiance, bool direct, float* sums) {
   const float3 none = (float3)(0.0f);
@@ -78,12 +71,14 @@ static inline void add_radiance(float3 radiance, bool direct, float* sums) {
 #define IN_ITS_PLACE
 #endif
 
+#ifndef HAS_SPECULAR /* else kernels/render/specular_path_sample.cl */
 /* As add_sample, with all light that the eye ray finds. */
 IN_ITS_PLACE
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 weight = (float3)(1.0f);
   ShadowEnds ends = free_ends();
+  uint state = 0u; /* of the automaton of path classes, after the surfaces so far */
   for (uint surfaces = 1u;; ++surfaces) {
     Surface s;
     float3 radiance = (float3)(0.0f);
@@ -94,12 +89,13 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
         point = s.splat;
         add_surface(lights.params, ray, t_start, &s, sums);
       }
-      if (path_counts(lights.params, 0u))
+      if (path_counts(lights.params, state))
         radiance = seen_light(lights, met, &s);
     }
+    state = path_after(lights.params, state, false);
     const bool shines = met && s.front && surfaces <= lights.params->most_bounces;
 #ifdef HAS_LIGHT
-    if (shines && path_counts(lights.params, surfaces))
+    if (shines && path_counts(lights.params, state))
       radiance += weight * (s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]));
 #endif
     add_radiance(radiance, surfaces == 1u, sums);
@@ -113,3 +109,4 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
   }
   return point;
 }
+#endif

@@ -2,10 +2,11 @@
  * one, shaded together (method.md section 6).
  * NDRange: (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows), local (GROUP_X, GROUP_Y); pixel (i, j) of the tile,
  * the image's (first_x + i, first_y + j), is shaded from hits[j * columns + i] into film[(j * columns + i) *
- * FILM_CHANNELS ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel has, and adds to the film
+ * FILM_STRIDE ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel has, and adds to the film
  * unless first_sample is 0; of fewer the rest of the group rests. Results do not depend on how an image is cut into
  * launches. */
 #include "render/eye_sample.cl"
+#include "render/specular_sample.cl"
 #include "render/film.cl"
 #include "render/group.cl"
 
@@ -20,8 +21,8 @@ void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global M
   const size_t at = item.row * (size_t)columns + item.column;
   const Lights lights = {params, materials, delta_lights, emitters};
   const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + item.lane, params->seed};
-  float sums[FILM_SUMS];
-  for (int c = 0; c < FILM_SUMS; ++c)
+  float sums[SAMPLE_SUMS];
+  for (int c = 0; c < SAMPLE_SUMS; ++c)
     sums[c] = 0.0f;
   uint point = FILM_NO_POINT;
   if (in_tile && id.sample < params->samples) {
@@ -35,5 +36,5 @@ void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global M
   barrier(CLK_LOCAL_MEM_FENCE);
   if (in_tile)
     add_to_film(samples_of + item.pixel, item.lane, first_sample, min(params->samples - first_sample, (uint)GRID_RAYS),
-                film + FILM_CHANNELS * at);
+                film + FILM_STRIDE * at);
 }

@@ -22,23 +22,29 @@ typedef struct Camera {
   float pad3;
 } Camera;
 
+/* Classes of light paths as an automaton that reads a path's surfaces, D or S each, from the eye on. It starts in state
+ * 0. */
+#define PATH_STATES 128
+#define PATH_AFTER_D(state) ((state)&255u)          /* bits 0-7: the state after a diffuse surface */
+#define PATH_AFTER_S(state) (((state) >> 8) & 255u) /* bits 8-15: after a specular one */
+#define PATH_COUNTS 0x10000u                        /* bit 16: paths whose next point is the light count */
+#define PATH_GOES_ON 0x20000u                       /* bit 17: some longer path that begins like this counts */
+
 typedef struct RenderParams {
   Camera camera;        /* bytes 0-63 */
   float environment[3]; /* bytes 64-75: radiance from every direction, scaled */
-  pg_uint most_bounces; /* bytes 76-79: of the path tracer: no path has more surface points; or NO_BOUNCE_LIMIT */
+  pg_uint most_bounces; /* bytes 76-79: no path has more surface points; or NO_BOUNCE_LIMIT. For the path tracer, and
+                           for what others see by way of specular surfaces */
   pg_uint samples;      /* bytes 80-83: samples a pixel */
   pg_uint seed;         /* bytes 84-87 */
   pg_uint jitter;       /* bytes 88-91: 0: samples at the centres of their strata */
   pg_uint delta_lights; /* bytes 92-95: number of point and directional lights */
   pg_uint emitters;     /* bytes 96-99: number of emitting splats */
   float step_delta;     /* bytes 100-103: the absolute-delta variant's delta, root cube units */
-  pg_uint path_classes; /* bytes 104-107: of the path tracer: bit k: paths of k surface points count (L D..D E); the
-                           last bit: those of as many or more */
-  pg_uint pad0;
+  pg_uint pad0[2];
+  pg_uint path_states[PATH_STATES]; /* bytes 112-623: of the path tracer: the classes of paths that count */
 } RenderParams;
 
-#define ALL_PATH_CLASSES 0xffffffffu
-#define LAST_PATH_CLASS 31u
 #define NO_BOUNCE_LIMIT 0xffffffffu
 
 /* What the 32 eye rays of a pixel meet, in the order of its samples. */
@@ -63,9 +69,18 @@ typedef struct Emitter {
   float cumulative; /* bytes 4-7: share of this and all earlier emitters in the emitted power; the last is 1 */
 } Emitter;
 
+#define MATERIAL_DIFFUSE 0u
+#define MATERIAL_MIRROR 1u /* its front reflects */
+#define MATERIAL_GLASS 2u  /* the normals point out of it */
+#define MATERIAL_PHONG 3u  /* diffuse, and a specular lobe */
+
 typedef struct Material {
-  float emission[3]; /* bytes 0-11: radiance of the front side, scaled */
-  float pad0;
+  float emission[3];   /* bytes 0-11: radiance of the front side, scaled */
+  pg_uint type;        /* bytes 12-15: MATERIAL_... */
+  float specular[3];   /* bytes 16-27: mirror: reflectance; phong: what the lobe reflects at most */
+  float exponent;      /* bytes 28-31: phong: of the lobe */
+  float absorption[3]; /* bytes 32-43: glass: share of light lost, per root cube side (Beer) */
+  float ior;           /* bytes 44-47: glass: index of refraction */
 } Material;
 
 /* One pixel of the film, FILM_CHANNELS scalars. Radiances are scaled means over the pixel's samples; Z, N, P and albedo
@@ -83,6 +98,8 @@ typedef struct Material {
 #define FILM_POINT 19     /* as_float(index into the point pool) of the first sample that hit, or FILM_NO_POINT */
 #define FILM_SPREAD 20    /* 3: sum over the samples of (radiance - mean)^2, scaled */
 #define FILM_CHANNELS 23
+#define FILM_SPECULAR 23 /* 3: only where the scene has specular surfaces: all that the eye sees by way of them */
+#define FILM_CHANNELS_SPECULAR 26
 #define FILM_NO_POINT 0xffffffffu
 
 #endif

@@ -11,9 +11,9 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
   RayAnswer best = {ray->t_max, NO_SPLAT};
   for (uint k = 0u; k < point_count; ++k) {
     const float4 centre = points[POINT_TEXELS * k];
-    const float3 normal = points[POINT_TEXELS * k + 1u].xyz;
+    const float4 normal = points[POINT_TEXELS * k + 1u];
     float q;
-    const float t = ray_disc(origin, direction, centre, normal, &q);
+    const float t = ray_disc(origin, direction, centre, normal.xyz, &q);
     if (t > ray->t_min && t < best.t && !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
       best.t = t;
       best.splat = k;

@@ -43,6 +43,10 @@ TEST_CASE("device and host lay the shared structs out alike") {
       sizeof(RayPacketAnswer),
       sizeof(EyeHits),
       sizeof(SegmentQuery),
+      offsetof(Material, type),
+      offsetof(Material, specular),
+      offsetof(Material, absorption),
+      offsetof(Material, ior),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_layout");

@@ -1,28 +1,79 @@
 #include "host/error.h"
 #include "host/passes/light_paths.h"
 #include <catch2/catch.hpp>
+#include <string>
+#include <vector>
 
 using namespace pointgi;
 using Catch::Contains;
 
-TEST_CASE("classes of light paths become bits, the longest bounds the bounces") {
-  CHECK(light_paths("", {}).classes == ALL_PATH_CLASSES);
+namespace {
+
+/// Which of these count, as a string of 0 and 1.
+std::string counted(const std::string& list, const std::vector<std::string>& surfaces) {
+  const LightPaths paths = light_paths(list, {});
+  std::string bits;
+  for (const std::string& of : surfaces)
+    bits += paths.counts(of) ? '1' : '0';
+  return bits;
+}
+
+} // namespace
+
+TEST_CASE("classes of light paths count their paths, the longest bounds the bounces") {
+  const std::string long_path(100, 'D');
+  const std::vector<std::string> diffuse = {"", "D", "DD", "DDD", "DDDD", long_path};
+  CHECK(light_paths("", {}).all);
+  CHECK(counted("", diffuse) == "111111");
+  CHECK(counted("LE", diffuse) == "100000");
+  CHECK(counted("LDE,LDDE,LDDDE", diffuse) == "011100");
+  CHECK(counted("LDDE,LE", diffuse) == "101000");
+  CHECK(counted("LD+E", diffuse) == "011111");
+  CHECK(counted("LE,LD+E", diffuse) == "111111");
+  CHECK(counted("LDD+E", diffuse) == "001111");
+  CHECK(counted("LD+DE", diffuse) == "001111");
+  CHECK(counted("LD+D+DE", diffuse) == "000111");
   CHECK(light_paths("", {}).most_bounces == NO_BOUNCE_LIMIT);
-  CHECK(light_paths("LE", {}).classes == 1u);
   CHECK(light_paths("LE", {}).most_bounces == 0u);
-  CHECK(light_paths("LDE,LDDE,LDDDE", {}).classes == 0b1110u);
   CHECK(light_paths("LDE,LDDE,LDDDE", {}).most_bounces == 3u);
-  CHECK(light_paths("LDDE,LE", {}).classes == 0b101u);
-  CHECK(light_paths("LD+E", {}).classes == ~1u);
-  CHECK(light_paths("LE,LD+E", {}).classes == ALL_PATH_CLASSES);
-  CHECK(light_paths("LDD+E", {}).classes == ~0b11u);
-  CHECK(light_paths("LD+DE", {}).classes == ~0b11u);
-  CHECK(light_paths("LD+D+DE", {}).classes == ~0b111u);
   CHECK(light_paths("LDD+E", {}).most_bounces == NO_BOUNCE_LIMIT);
   CHECK(light_paths("L" + std::string(30, 'D') + "E", {}).most_bounces == 30u);
   CHECK(light_paths("LD+E", 5).most_bounces == 5u);
   CHECK(light_paths("LDE", 5).most_bounces == 1u);
   CHECK(light_paths("", 0).most_bounces == 0u);
+}
+
+TEST_CASE("classes with specular surfaces tell caustics from reflections") {
+  const std::vector<std::string> surfaces = {"", "D", "S", "DS", "SD", "SSD", "DDSS", "DSD", "SDS", "SDDS"};
+  CHECK(counted("LE", surfaces) == "1000000000");
+  CHECK(counted("LDE", surfaces) == "0100000000");
+  CHECK(counted("LD*S*E", surfaces) == "1111001000");
+  CHECK(counted("LD+S*E", surfaces) == "0101001000");
+  CHECK(counted("LS*E", surfaces) == "1010000000");
+  CHECK(counted("LS+DE", surfaces) == "0000110000");
+  CHECK(counted("LS+DS*E", surfaces) == "0000110010");
+  CHECK(counted("LS+DE,LSE,LDS+E", surfaces) == "0011110000");
+  CHECK(counted("LD*SD*SE", surfaces) == "0000001011"); // in DSD an S is missing
+  CHECK_FALSE(light_paths("LE,LD+E", {}).all);
+  CHECK(light_paths("LS*DE", 4).most_bounces == 4u);
+  CHECK(light_paths("LSDSE", {}).most_bounces == 3u);
+  // What begins like no path that counts is given up.
+  const LightPaths caustics = light_paths("LS+DE", {});
+  CHECK((caustics.states[0] & PATH_GOES_ON) != 0u);
+  CHECK((caustics.states[PATH_AFTER_S(caustics.states[0])] & (PATH_GOES_ON | PATH_COUNTS)) == 0u);
+}
+
+TEST_CASE("the automaton of a class says what its letters say, for all short paths") {
+  // LD+S*E by hand: at least one D, and no D behind an S.
+  const LightPaths paths = light_paths("LD+S*E", {});
+  for (unsigned length = 0; length <= 10; ++length)
+    for (unsigned bits = 0; bits < (1u << length); ++bits) {
+      std::string surfaces;
+      for (unsigned k = 0; k < length; ++k)
+        surfaces += (bits >> k) & 1u ? 'S' : 'D';
+      const bool truth = surfaces.find('D') != std::string::npos && surfaces.find("SD") == std::string::npos;
+      REQUIRE(paths.counts(surfaces) == truth);
+    }
 }
 
 TEST_CASE("what is no class of light paths is refused with the word and what is expected") {
@@ -37,8 +88,14 @@ TEST_CASE("what is no class of light paths is refused with the word and what is 
   };
   for (const char* wrong : {"L", "E", "D", "DE", "LD", "EDL", "lde", "LDE,", ",LDE", "LDE,,LE", " LDE"})
     CHECK_THAT(says(wrong), Contains("from L to E"));
-  for (const char* wrong : {"L+E", "LD++E", "L+DE", "LXE", "LDE LE", "LD*E", "LDLE", "LD(D)E"})
-    CHECK_THAT(says(wrong), Contains("expected D or D+"));
-  CHECK_THAT(says("LDE,LS+DE"), Contains("\"LS+DE\"") && Contains("specular"));
-  CHECK_THAT(says("L" + std::string(31, 'D') + "E"), Contains("at most 30 D, found 31"));
+  for (const char* wrong : {"L+E", "LD++E", "L+DE", "L*DE", "LD*+E", "LXE", "LDE LE", "LDLE", "LD(D)E", "LdE"})
+    CHECK_THAT(says(wrong), Contains("expected D or S, each with + or *"));
+  CHECK_THAT(says("LDE,LSX+DE"), Contains("\"LSX+DE\"") && Contains("found \"X\""));
+  std::string many;
+  for (const char* word :
+       {"LDSDSDSDSDSDSDSDSDSDSDSDSDSDSE", "LDDSDDSDDSDDSDDSDDSDDSDDSDDSE", "LSSDSSDSSDSSDSSDSSDSSDSSDSSDE",
+        "LDDDSSSDDDSSSDDDSSSDDDSSSDDDE", "LSDDSSSDDDDSSSSSDDDDDDSSSSSDE", "LSSSSDDSSSSDDSSSSDDSSSSDDSSDE"})
+    many += std::string(many.empty() ? "" : ",") + word;
+  CHECK_THAT(says(many), Contains("too many classes"));
+  CHECK_THAT(says("L" + std::string(31, 'D') + "E"), Contains("at most 30 D and S, found 31"));
 }

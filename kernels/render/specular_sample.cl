@@ -1,0 +1,107 @@
+/* One sample of a pixel where the scene has specular surfaces: the eye ray goes on from mirrors, through glass and by the
+ * lobe of Phong surfaces, one ray at a time, until it meets a surface that is only diffuse (ES*D), a light or nothing.
+ * What the eye ray itself meets is Direct and Diffuse as anywhere, everything behind is Specular. */
+#include "render/eye_sample.cl"
+#include "render/film.cl"
+#include "lib/specular.cl"
+
+#ifdef HAS_SPECULAR
+
+/* Two mirrors that face each other keep a ray for ever; by then, roulette has ended all but those that lose nothing. */
+#define MOST_EYE_BOUNCES 64u
+
+/* Once a sample and bounce, in one place, without a branch: see add_radiance in kernels/render/path_sample.cl. */
+static inline void add_seen(float3 direct, float3 diffuse, float3 specular, bool first, float* sums) {
+  const float3 none = (float3)(0.0f);
+  const float3 behind = first ? specular : direct + diffuse + specular;
+  add_direct(first ? direct : none, sums);
+  add_diffuse(first ? diffuse : none, sums);
+  sums[SUM_SPECULAR] += behind.x;
+  sums[SUM_SPECULAR + 1] += behind.y;
+  sums[SUM_SPECULAR + 2] += behind.z;
+}
+
+/* What direct_irradiance asks of a Phong surface. */
+static inline void prepare_highlight(Surface* s, const __global Material* material, float3 direction) {
+#ifdef HAS_PHONG
+  s->mirrored = reflect3(direction, facing_normal(s, direction));
+  s->exponent = material->exponent;
+  s->highlight = (float3)(0.0f);
+#endif
+}
+
+static inline float3 highlight_of(const Surface* s, const __global Material* material) {
+#ifdef HAS_PHONG
+  if (material->type == MATERIAL_PHONG)
+    return load3(material->specular) * s->highlight;
+#endif
+  return (float3)(0.0f);
+}
+
+/* What surfaces say of diffuse light. */
+static inline bool is_diffuse(const __global Material* material) {
+  return material->type == MATERIAL_DIFFUSE || material->type == MATERIAL_PHONG;
+}
+
+/* Roulette: a ray survives a bounce with the probability `factor`, what the surface leaves of its light, in its strongest
+ * colour, `longest` at most; its weight grows by what others lose. False where it ends. */
+static inline bool plays_on(SampleId id, uint bounces, float longest, float3 factor, float3* weight) {
+  if (bounces > SURE_BOUNCES) {
+    const float survival = fmin(fmax(fmax(factor.x, factor.y), factor.z), longest);
+    if (!(random4(id, DIMENSION_ROULETTE).x < survival))
+      return false;
+    *weight /= survival;
+  }
+  *weight *= factor;
+  return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
+}
+
+/* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
+ * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
+static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
+  uint point = FILM_NO_POINT;
+  float3 weight = (float3)(1.0f);
+  ShadowEnds ends = free_ends();
+  Media media = in_air();
+  const uint most = min(lights.params->most_bounces, MOST_EYE_BOUNCES);
+  for (uint bounces = 0u;; ++bounces) {
+    Surface s;
+    Scatter scatter;
+    float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), specular = (float3)(0.0f);
+    bool goes_on = false;
+    sums[FILM_RAYS] += 1.0f;
+    const bool met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
+    if (met) {
+      const __global Material* material = lights.materials + s.material;
+      media = media_before(media, &s, lights.materials);
+      weight *= beer_of(media, lights.materials, s.t);
+      if (bounces == 0u) {
+        point = s.splat;
+        add_surface(lights.params, ray, t_start, &s, sums);
+      }
+      if (s.front && is_diffuse(material) && (bounces == 0u || bounces < most)) {
+#ifdef HAS_LIGHT
+        prepare_highlight(&s, material, ray.direction);
+        direct = s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
+        specular = highlight_of(&s, material);
+#endif
+#ifdef HAS_RADIOSITY
+        diffuse = s.albedo * INVERSE_PI * s.irradiance;
+#endif
+      }
+    }
+    direct += seen_light(lights, met, &s);
+    add_seen(weight * direct, weight * diffuse, weight * specular, bounces == 0u, sums);
+    if (met && bounces < most)
+      goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);
+    /* No longest survival: what loses nothing goes on for MOST_EYE_BOUNCES. */
+    if (!goes_on || !plays_on(id, bounces, 1.0f, scatter.weight, &weight))
+      break;
+    ray = scattered_ray(&s, &scatter, lights.params->step_delta);
+    ends = scattered_ends(&s, &scatter, media);
+    hit = trace_closest_from(POOL_ARGS, ray, ends);
+    id.vertex += 1u;
+  }
+  return point;
+}
+#endif
