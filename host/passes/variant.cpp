@@ -89,6 +89,15 @@ unsigned gather_room(unsigned k) {
   return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
 }
 
+Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power) {
+  return program(variant, "photon/trace_photons.cl",
+                 feature_options(features) + (equal_power ? " -D EQUAL_POWER" : ""));
+}
+
+Program caustic_irradiance_program(unsigned k) {
+  return {"photon/irradiance.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
+}
+
 Program nearest_photons_program(unsigned k) {
   return {"photon/nearest.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
 }

@@ -66,6 +66,10 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 /// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
 
+/// Photons from the lights to diffuse surfaces, trace_photons; the scene has specular surfaces.
+Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power);
+/// Irradiance of given places by the k nearest photons, caustic_irradiance.
+Program caustic_irradiance_program(unsigned k);
 /// Nearest photons of given places, nearest_of_places, for k up to this many.
 Program nearest_photons_program(unsigned k);
 /// Room for photons that a program is built with, to gather k of them: few sizes, or each k would be compiled anew.

@@ -15,6 +15,47 @@ typedef struct Photon {
  * (y) and 20-29 (z): which side of a surface it comes from is all that is asked of it. */
 #define PHOTON_DIRECTION_SCALE 511.0f
 
+/* Splats of mirror, glass or Phong material that photons are aimed at together. */
+typedef struct PhotonLeaf {
+  float centre[3]; /* bytes 0-11: root cube */
+  float radius;    /* bytes 12-15: of a sphere that holds the whole discs */
+  pg_uint first;   /* bytes 16-19: its splats in the list of all leaves' splats */
+  pg_uint count;   /* bytes 20-23 */
+} PhotonLeaf;
+#define NO_PHOTON_LEAF 0xffffffffu
+
+/* Photons of one light for one leaf. */
+typedef struct PhotonAim {
+  pg_uint first;  /* bytes 0-3: number of its first photon */
+  pg_uint count;  /* bytes 4-7 */
+  pg_uint source; /* bytes 8-11: a point or directional light, or AIM_... */
+  pg_uint leaf;   /* bytes 12-15 */
+  float share;    /* bytes 16-19: of what the light sends into the leaf's sphere, for each photon; with equal power: each
+                     photon's luminance */
+} PhotonAim;
+#define AIM_EMITTERS 0xfffffffeu
+#define AIM_ENVIRONMENT 0xfffffffdu
+
+/* How a photon ended. */
+#define PHOTON_ASIDE 0u    /* met another leaf or none: it is sent by the leaf that it met, and counts for nothing here */
+#define PHOTON_STORED 1u   /* met a diffuse surface */
+#define PHOTON_ABSORBED 2u /* nothing was left of it */
+#define PHOTON_ESCAPED 3u  /* met nothing any more */
+#define PHOTON_CUT 4u      /* had as many bounces as there may be */
+#define PHOTON_ENDS 5
+#define PHOTON_MOST_BOUNCES 64u
+
+typedef struct PhotonFlight {
+  float position[3];  /* bytes 0-11: where it was stored, root cube */
+  pg_uint direction;  /* bytes 12-15: as Photon's */
+  float power[3];     /* bytes 16-27: at its end */
+  pg_uint end;        /* bytes 28-31 */
+  float emitted[3];   /* bytes 32-43: power when it set out */
+  pg_uint bounces;    /* bytes 44-47 */
+  float absorbed[3];  /* bytes 48-59: what its surfaces and glass took on the way, less what chance gave */
+  pg_uint reserved;   /* bytes 60-63: 0 */
+} PhotonFlight;
+
 /* The map is a left-balanced kd-tree over buckets of PHOTON_LANES photons. Three binary levels make one node of
  * eight children, so that a node's boxes are one set of vectors. All buckets lie equally deep; node i has the children
  * 8 i + 1 ... 8 i + 8, so nothing points anywhere; the nodes over the buckets begin at (8^(levels-1) - 1) / 7, and bucket
