@@ -72,6 +72,10 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
   return program(variant, "fmm/direct_irradiance.cl", feature_options(features));
 }
 
+Program specular_rays_program(const TraversalVariant& variant) {
+  return program(variant, "traverse/specular_rays.cl", feature_options({false, false, false, false, true, true, true}));
+}
+
 Program segments_program(const TraversalVariant& variant) {
   return program(variant, "visibility/segments.cl", "");
 }

@@ -56,6 +56,9 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
 /// Direct irradiance of the points, direct_irradiance_of_points.
 Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features);
 
+/// Given rays through specular surfaces, trace_specular_rays, for tests.
+Program specular_rays_program(const TraversalVariant& variant);
+
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);
 

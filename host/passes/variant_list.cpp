@@ -157,6 +157,7 @@ std::vector<ProgramUse> all_programs() {
     add(shade_program(v, {true, true, true, true}), cpu, gpu);
     add(shade_program(v, {true, true, true, true, true, true, true}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
+    add(specular_rays_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(path_program(v, {true, true, true}, true), cpu, gpu);
     add(path_program(v, {true, true, true, false, true, true, true}, true), cpu, gpu);

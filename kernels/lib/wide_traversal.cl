@@ -212,17 +212,15 @@ static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const B
  * hold materials. */
 static inline lanes_i lanes_of_origin(POOL_PARAMS, ShadowEnds ends, float3 direction, const BlockHits* h, lanes_i met) {
   float t_of[WIDE_LANES];
-  float belongs[WIDE_LANES];
+  uint belong = 0u; /* bit k: lane k does */
   store_lanes(select((lanes_f)(INFINITY), h->t, met), t_of);
-  for (uint lane = 0u; lane < WIDE_LANES; ++lane) {
-    belongs[lane] = 0.0f;
+  for (uint lane = 0u; lane < WIDE_LANES; ++lane)
     if (t_of[lane] < INFINITY) {
       const uint i = POINT_TEXELS * (h->first + lane);
-      const float radius = pool_point_texel(i).w;
-      belongs[lane] = belongs_to_origin(ends, direction, t_of[lane], radius, pool_point_texel(i + 1u)) ? 1.0f : 0.0f;
+      if (belongs_to_origin(ends, direction, t_of[lane], pool_point_texel(i).w, pool_point_texel(i + 1u)))
+        belong |= 1u << lane;
     }
-  }
-  return load_lanes(belongs) > 0.0f;
+  return (((lanes_u)(belong) >> LANE_NUMBERS) & 1u) != 0u;
 }
 #define LANES_OF_ORIGIN(h, met) lanes_of_origin(POOL_ARGS, ends, ray.direction, h, met)
 #endif

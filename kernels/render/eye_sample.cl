@@ -59,6 +59,14 @@ static inline float3 seen_light(Lights lights, bool met, const Surface* s) {
   return (float3)(0.0f);
 }
 
+/* Always inline: as a function of its own, a long path is given the sums, and the ends of rays, in memory. Compilers that are
+ * told not to optimise leave marks of forced inlining that simulators do not know. */
+#ifdef __OPTIMIZE__
+#define IN_ITS_PLACE __attribute__((always_inline))
+#else
+#define IN_ITS_PLACE
+#endif
+
 #ifndef HAS_SPECULAR /* else kernels/render/specular_sample.cl */
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */

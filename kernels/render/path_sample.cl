@@ -63,14 +63,6 @@ static inline void add_radiance(float3 radiance, bool direct, float* sums) {
   add_diffuse(direct ? none : radiance, sums);
 }
 
-/* Always inline: as a function of its own add_path is given the sums, and the ends of rays, in memory. Compilers that are
- * told not to optimise leave marks of forced inlining that simulators do not know. */
-#ifdef __OPTIMIZE__
-#define IN_ITS_PLACE __attribute__((always_inline))
-#else
-#define IN_ITS_PLACE
-#endif
-
 #ifndef HAS_SPECULAR /* else kernels/render/specular_path_sample.cl */
 /* As add_sample, with all light that the eye ray finds. */
 IN_ITS_PLACE

@@ -58,6 +58,7 @@ static inline bool plays_on(SampleId id, uint bounces, float longest, float3 fac
 
 /* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
+IN_ITS_PLACE
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 weight = (float3)(1.0f);
