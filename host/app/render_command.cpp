@@ -1,6 +1,7 @@
 #include "host/app/commands.h"
 #include "host/app/indirect_stages.h"
 #include "host/app/interrupt.h"
+#include "host/app/photon_stage.h"
 #include "host/app/prepare.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
@@ -213,14 +214,15 @@ ExitCode run_render(const RenderOptions& options) {
   const IndirectLight indirect = run_indirect_stages(session, on_device, variant, scene, placed.frame, lighting,
                                                      points_of(pools), paths.has_value(), stages, interrupted);
   const std::optional<Buffer<cl_float4>> field = normal_field_of(session, lighting, points_of(pools), stages);
-  stages.skip("photon", "no specular material");
-  if (scene.caustics.place)
-    spdlog::warn("{}: [caustics] has no effect: no material of the scene is specular", scene.caustics.place->text());
+  const Caustics caustics =
+      run_photon_stage(session, on_device, variant, scene, placed.frame, lighting, points_of(pools),
+                       field ? &*field : nullptr, paths.has_value(), stages, interrupted);
   RenderRequest request{window, lighting, placed.frame, ids, variant, paths};
   request.irradiance = indirect.irradiance ? &*indirect.irradiance : nullptr;
   request.normal_field = field ? &*field : nullptr;
+  request.photons = caustics.map ? &*caustics.map : nullptr;
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
-                       film_channels(request.has_indirect(), request.has_specular()),
+                       film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
   const bool written = render_picture(session, on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)
@@ -234,6 +236,8 @@ ExitCode run_render(const RenderOptions& options) {
     stats.session = &session;
     stats.links = indirect.links;
     stats.solution = indirect.solution;
+    stats.photons = caustics.ledger;
+    stats.photon_watts = lighting.radiance.scale * placed.frame.side * placed.frame.side;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }

@@ -30,6 +30,29 @@ nlohmann::json variant_json(const TraversalVariant& v) {
           {"fast_math", v.fast_math}};
 }
 
+namespace {
+
+/// Numbers of photons, and their powers per colour.
+nlohmann::json photons_json(const PhotonLedger& l, double watts) {
+  const auto power = [&](const std::array<double, 3>& p) {
+    return nlohmann::json{p[0] * watts, p[1] * watts, p[2] * watts};
+  };
+  return {{"aimed", l.aimed},
+          {"emitted", l.emitted},
+          {"stored", l.stored},
+          {"absorbed", l.absorbed},
+          {"escaped", l.escaped},
+          {"cut", l.cut},
+          {"power_w",
+           {{"emitted", power(l.emitted_power)},
+            {"stored", power(l.stored_power)},
+            {"absorbed", power(l.absorbed_power)},
+            {"escaped", power(l.escaped_power)},
+            {"cut", power(l.cut_power)}}}};
+}
+
+} // namespace
+
 void write_stats(const std::string& path, const Stats& stats, const StageLog& stages) {
   using nlohmann::json;
   const DeviceInfo& info = stats.session->info();
@@ -72,6 +95,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
                         {"residual", stats.solution.residual},
                         {"converged", stats.solution.end == SolveEnd::converged}};
   }
+  if (stats.photons) out["photons"] = photons_json(*stats.photons, stats.photon_watts);
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())
     out["stages"].push_back({{"name", s.name},

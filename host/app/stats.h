@@ -2,6 +2,7 @@
 #include "fmm/solve/solve.h"
 #include "host/app/stages.h"
 #include "host/cl/session.h"
+#include "host/passes/photon.h"
 #include "host/passes/render.h"
 #include "host/passes/tuned.h"
 #include "octree/pack/pools.h"
@@ -18,7 +19,9 @@ struct Stats {
   const Session* session = nullptr;
   RenderTotals render;
   LinkStatistics links;
-  Solution solution; ///< of radiosity; without applies where there was none
+  Solution solution;                   ///< of radiosity; without applies where there was none
+  std::optional<PhotonLedger> photons; ///< absent: none were sent
+  double photon_watts = 1.0;           ///< W of the ledger's unit
   VariantChoice variant;
   double seconds = 0.0;
 };

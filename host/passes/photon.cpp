@@ -146,9 +146,9 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
                        stop);
 }
 
-std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map, unsigned k,
+std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,
                                           const std::vector<cl_float4>& places) {
-  const Program program = caustic_irradiance_program(k);
+  const Program program = caustic_irradiance_program(map.k);
   cl::Kernel kernel = session.kernel(program.file, program.options, "caustic_irradiance");
   const std::size_t count = places.size() / 2;
   const auto device_places = session.upload(places);

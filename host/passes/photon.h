@@ -55,7 +55,7 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
                            const std::function<bool()>& stop);
 
 /// Irradiance [n float4, W/m², scaled] by the map of places on surfaces, [2 n]: position, unit normal of the lit side.
-std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map, unsigned k,
+std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,
                                           const std::vector<cl_float4>& places);
 
 } // namespace pointgi

@@ -9,6 +9,7 @@ struct DevicePhotonMap {
   Buffer<PhotonNode> nodes;
   Buffer<float> buckets;
   Buffer<GatherParams> params;
+  unsigned k = 0; ///< photons an estimate
 };
 
 /// `k` photons an estimate, none farther than `radius`, root cube units (> 0; infinity: no limit).

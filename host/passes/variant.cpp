@@ -24,10 +24,16 @@ std::string feature_options(const SceneFeatures& features) {
   return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
          (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
          (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.specular ? " -D HAS_SPECULAR" : "") +
-         (features.glass ? " -D HAS_GLASS" : "") + (features.phong ? " -D HAS_PHONG" : "");
+         (features.glass ? " -D HAS_GLASS" : "") + (features.phong ? " -D HAS_PHONG" : "") +
+         (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
+                                : "");
 }
 
 } // namespace
+
+unsigned gather_room(unsigned k) {
+  return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
+}
 
 std::string name_of(const TraversalVariant& v) {
   const bool wide = v.form == TraversalForm::wide;
@@ -87,10 +93,6 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 
 Program fmm_program(const char* file) {
   return {file, ""};
-}
-
-unsigned gather_room(unsigned k) {
-  return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
 }
 
 Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power) {

@@ -34,6 +34,7 @@ struct SceneFeatures {
   bool specular = false;  ///< some splats are no diffuse ones: rays go on, normals are a field
   bool glass = false;     ///< some are glass; specular too then
   bool phong = false;     ///< some have a Phong lobe; specular too then
+  unsigned gather_k = 0;  ///< of the picture: photons an estimate of caustics; 0: there are none; specular too then
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.

@@ -129,6 +129,8 @@ struct CausticSettings {
   long long photons = 400000;
   int gather_k = 50;
   std::string power = "unbiased";
+  std::optional<double>
+      max_radius; ///< world units: photons farther off do not count; absent: a part of the scene's size
   std::optional<SourcePlace> place;
 };
 
