@@ -32,6 +32,7 @@ typedef struct ShadowEnds {
 #ifdef HAS_SPECULAR
   uint origin_material; /* 1 + material of the surface at the origin: discs of others are no part of it; 0: all may be */
   uint origin_back;     /* 1: the ray goes off on the back side of the surface there, into glass */
+  uint origin_through;  /* 1: it came through that surface */
   uint medium;          /* 1 + material of the glass that the ray is in; 0: none */
 #endif
 } ShadowEnds;
@@ -39,7 +40,7 @@ typedef struct ShadowEnds {
 static inline ShadowEnds free_ends(void) {
   ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
 #ifdef HAS_SPECULAR
-  ends.origin_material = ends.origin_back = ends.medium = 0u;
+  ends.origin_material = ends.origin_back = ends.origin_through = ends.medium = 0u;
 #endif
   return ends;
 }
@@ -56,18 +57,20 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float dis
  * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
 #define ARRIVAL_DISTANCE 0.1f
 
-/* normal.w: the disc's material. A ray that goes into glass passes by the discs whose fronts it meets near there, and
- * arrives at backs: all that was said of sides is turned round. It has no coincident other side: that of a sheet of glass
- * lets it out again. */
+/* normal.w: the disc's material. A ray that goes off into glass passes by the discs whose fronts it meets near there, and
+ * arrives at backs: all that was said of sides is turned round. What is coincident and faces the other way, the far side of
+ * a sheet or the floor that glass stands on, does not stop a ray that is thrown back; one that came through must meet it. */
 static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float4 normal) {
   float along = dot3(normal.xyz, direction);
 #ifdef HAS_SPECULAR
-  if (ends.origin_material != 0u && (uint)normal.w + 1u != ends.origin_material)
-    return false;
-  if (ends.origin_back != 0u) {
-    along = -along;
-    if (dot3(normal.xyz, ends.origin_normal) < 0.0f)
+  if (ends.origin_material != 0u) {
+    if (dot3(normal.xyz, ends.origin_normal) < 0.0f) {
+      if (ends.origin_through != 0u)
+        return false;
+    } else if ((uint)normal.w + 1u != ends.origin_material) {
       return false;
+    }
+    along = ends.origin_back != 0u ? -along : along;
   }
 #endif
   return belongs_to_end(ends.origin_normal, ends.origin_radius, t, radius, normal.xyz) &&

@@ -22,6 +22,7 @@ typedef struct Scatter {
   float3 direction;
   float3 weight; /* of the light it brings on, per colour */
   bool back;     /* it goes off on the surface's back side */
+  bool through;  /* it came through the surface */
 } Scatter;
 
 /* The surface's normal on the ray's side. */
@@ -34,7 +35,7 @@ static inline float3 facing_normal(const Surface* s, float3 direction) {
 static inline bool scatter_mirror(const Surface* s, const __global Material* material, float3 direction, Scatter* out) {
   out->direction = reflect3(direction, facing_normal(s, direction));
   out->weight = load3(material->specular);
-  out->back = false;
+  out->back = out->through = false;
   return s->front;
 }
 
@@ -62,6 +63,7 @@ static inline void scatter_glass(const Surface* s, const __global Material* mate
   out->direction = reflected ? reflect3(direction, n) : refract3(direction, n, cosine, cosine_t, eta);
   out->weight = (float3)(1.0f);
   out->back = reflected != s->front;
+  out->through = !reflected;
   if (!reflected)
     *media = beyond;
 }
@@ -75,7 +77,7 @@ static inline bool scatter_phong(const Surface* s, const __global Material* mate
   out->direction = phong_direction(reflect3(direction, n), material->exponent, u, v);
   const float cosine = dot3(out->direction, n);
   out->weight = load3(material->specular) * phong_weight(cosine, material->exponent);
-  out->back = false;
+  out->back = out->through = false;
   return s->front && cosine > 0.0f;
 }
 #endif
@@ -118,6 +120,7 @@ static inline ShadowEnds scattered_ends(const Surface* s, const Scatter* scatter
   ends.origin_radius = s->radius;
   ends.origin_material = s->material + 1u;
   ends.origin_back = scatter->back ? 1u : 0u;
+  ends.origin_through = scatter->through ? 1u : 0u;
   ends.medium = media.x + 1u; /* NO_MEDIUM: 0 */
   return ends;
 }

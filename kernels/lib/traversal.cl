@@ -42,6 +42,24 @@ static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 cent
          distance - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
 }
 
+#ifdef HAS_SPECULAR
+/* The next hit behind a rim: as if the ray had come through the rim's surface, so that a floor in the rim's own plane, before
+ * or behind it by rounding, is met. */
+static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit rim) {
+  const float4 normal = pool_point_texel(POINT_TEXELS * rim.splat + 1u);
+  ends.origin_normal = normal.xyz;
+  ends.origin_radius = pool_point_texel(POINT_TEXELS * rim.splat).w;
+  ends.origin_material = (uint)normal.w + 1u;
+  ends.origin_back = 0u;
+  ends.origin_through = 1u;
+  ray.origin = fma((float3)(rim.t), ray.direction, ray.origin);
+  ray.t_min = -SEGMENT_MARGIN;
+  Hit hit = trace_closest_from(POOL_ARGS, ray, ends);
+  hit.t += rim.t;
+  return hit;
+}
+#endif
+
 /* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. Adds
  * the rays traced to *rays. */
 static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float* rays) {
@@ -58,8 +76,12 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, fl
     if (!sticks_out(POOL_ARGS, ray, ends, pool_point_texel(POINT_TEXELS * hit.splat)))
       break;
     *rays += 1.0f;
+#ifdef HAS_SPECULAR
+    hit = hit_behind(POOL_ARGS, ray, ends, hit);
+#else
     rest.t_min = hit.t;
     hit = trace_closest_of(POOL_ARGS, rest, ends);
+#endif
   }
   return hit;
 }

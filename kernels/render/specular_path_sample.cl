@@ -32,7 +32,7 @@ static inline bool choose_bounce(const Surface* s, Lights lights, SampleId id, f
   }
   bounce->scatter.direction = bounced_ray(s, id, 0.0f).direction;
   bounce->scatter.weight = s->albedo / (1.0f - chance);
-  bounce->scatter.back = false;
+  bounce->scatter.back = bounce->scatter.through = false;
   return s->front;
 }
 

@@ -85,6 +85,8 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
       if (bounces == 0u) {
         point = s.splat;
         add_surface(lights.params, ray, t_start, &s, sums);
+        if (!s.front && material->type == MATERIAL_GLASS)
+          sums[FILM_BACK_FACE] -= 1.0f; /* no black one */
       }
       if (s.front && is_diffuse(material) && (bounces == 0u || bounces < most)) {
 #ifdef HAS_LIGHT

@@ -40,7 +40,7 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
   for (const auto& stage : stats["stages"])
     (stage["ran"] ? ran : skipped).push_back(stage["name"]);
   CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "render", "image"});
-  CHECK(skipped == std::vector<std::string>{"vmap", "fmm", "photon"});
+  CHECK(skipped == std::vector<std::string>{"vmap", "fmm", "normals", "photon"});
   std::size_t stages = 0, launches = 0;
   double stages_end = 0.0;
   const auto trace = json_of(folder.file("t.json"));

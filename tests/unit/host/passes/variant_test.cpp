@@ -83,6 +83,21 @@ TEST_CASE("options hang on what a kernel reads, fast math on the kernels that ma
   CHECK_THAT(shade_program(v, {}).options, !Contains("RAY_PACKETS"));
 }
 
+TEST_CASE("kernels of a scene without specular surfaces know nothing of them") {
+  const TraversalVariant v = plain_variant(TraversalForm::wide);
+  const SceneFeatures diffuse{true, true, true, true};
+  for (const Program& program : {shade_program(v, diffuse), path_program(v, diffuse, true), eye_rays_program(v),
+                                 direct_irradiance_program(v, diffuse), segments_program(v), trace_program(v)})
+    for (const char* feature : {"SPECULAR", "GLASS", "PHONG"})
+      CHECK_THAT(program.options, !Contains(feature));
+  SceneFeatures mirrors = diffuse;
+  mirrors.specular = true;
+  CHECK_THAT(shade_program(v, mirrors).options,
+             Contains("HAS_SPECULAR") && !Contains("HAS_GLASS") && !Contains("HAS_PHONG"));
+  mirrors.glass = mirrors.phong = true;
+  CHECK_THAT(path_program(v, mirrors, false).options, Contains("HAS_GLASS") && Contains("HAS_PHONG"));
+}
+
 TEST_CASE("each program is listed once, with the devices that may run it") {
   std::set<std::string> seen;
   std::size_t cpu_only = 0;

@@ -45,6 +45,37 @@ TEST_CASE("only emitting splats are emitters, only lights with power are lights"
   CHECK_FALSE(lighting.has_environment);
 }
 
+TEST_CASE("materials reach the device in its unit of length, and which of them splats have") {
+  Scene scene = lit_scene();
+  scene.materials.resize(4);
+  scene.materials[1].type = MaterialType::glass;
+  scene.materials[1].ior = 1.33;
+  scene.materials[1].absorption = Vector3d(1.0, 2.0, 3.0);
+  scene.materials[2].type = MaterialType::mirror;
+  scene.materials[2].reflectance = Vector3d(0.9, 0.8, 0.7);
+  scene.materials[3].type = MaterialType::phong;
+  scene.materials[3].specular = Vector3d(0.3, 0.2, 0.1);
+  scene.materials[3].exponent = 40.0;
+  Frame frame;
+  frame.side = 5.0;
+  const auto splats = two_splats();
+  const DeviceLighting lighting = device_lighting(scene, frame, splats);
+  REQUIRE(lighting.materials.size() == 4);
+  CHECK(lighting.materials[0].type == MATERIAL_DIFFUSE);
+  CHECK(lighting.materials[1].type == MATERIAL_GLASS);
+  CHECK(lighting.materials[1].ior == 1.33f);
+  CHECK(lighting.materials[1].absorption[2] == 15.0f); // over a cube's side, five units
+  CHECK(lighting.materials[2].type == MATERIAL_MIRROR);
+  CHECK(lighting.materials[2].specular[1] == 0.8f);
+  CHECK(lighting.materials[3].type == MATERIAL_PHONG);
+  CHECK(lighting.materials[3].specular[0] == 0.3f);
+  CHECK(lighting.materials[3].exponent == 40.0f);
+  CHECK(lighting.has_specular());
+  CHECK(lighting.has_type(MATERIAL_GLASS));
+  CHECK_FALSE(lighting.has_type(MATERIAL_MIRROR)); // of a material that no splat has
+  CHECK_FALSE(device_lighting(lit_scene(), {}, splats).has_specular());
+}
+
 TEST_CASE("the radiance scale is a power of two near the brightest source, whatever its size") {
   for (const double power : {1e-20, 1.0, 1e20}) {
     Scene scene = lit_scene();
