@@ -162,7 +162,8 @@ std::vector<ProgramUse> all_programs() {
     add(path_program(v, {true, true, true}, true), cpu, gpu);
     add(path_program(v, {true, true, true, false, true, true, true}, true), cpu, gpu);
     for (const unsigned k : {64u, 512u, 1024u})
-      add(shade_program(v, {true, true, true, true, true, true, true, k}), cpu, false);
+      if (k == 64 || plain_but_for_kernel(v))
+        add(shade_program(v, {true, true, true, true, true, true, true, k}), cpu, false);
     for (const bool equal_power : {false, true})
       add(trace_photons_program(v, {false, false, false, false, true, true, true}, equal_power), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);

@@ -199,6 +199,8 @@ TEST_CASE("caustics of an area light are those that path tracing finds by chance
     options.integrator = "path";
     options.paths = "LS+DE";
   });
+  CHECK(mean(ours, "G") ==
+        Approx(mean(ours, "Direct.G") + mean(ours, "Specular.G") + mean(ours, "Caustic.G")).epsilon(1e-5));
   CHECK(mean(ours, "G") == Approx(mean(truth, "G")).epsilon(0.03));
   // Paths meet the rims of the lamp's discs too, which stick out of the lamp by a spacing: some 2 % more light; and
   // these paths' own noise is 2 %.

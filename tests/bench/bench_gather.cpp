@@ -61,8 +61,9 @@ void measure(Session& session, std::size_t count, unsigned k, int pairs) {
   const Program program = nearest_photons_program(k);
   cl::Kernel kernel = session.kernel(program.file, program.options, "nearest_of_places");
   const auto ours = [&] {
-    session.launch(kernel, LaunchShape::line((places.size() + PHOTON_PLACES_AT_ONCE - 1) / PHOTON_PLACES_AT_ONCE), on_device.nodes, on_device.buckets,
-                   on_device.params, device_places, distance2, photon, found, static_cast<cl_uint>(places.size()));
+    session.launch(kernel, LaunchShape::line((places.size() + PHOTON_PLACES_AT_ONCE - 1) / PHOTON_PLACES_AT_ONCE),
+                   on_device.nodes, on_device.buckets, on_device.params, device_places, distance2, photon, found,
+                   static_cast<cl_uint>(places.size()));
   };
 
   std::vector<float> rows, asked;

@@ -27,8 +27,8 @@ Found ask_device(const std::vector<Photon>& photons, const std::vector<cl_float4
   const auto found = session().allocate<cl_uint>(places.size());
   const Program program = nearest_photons_program(k);
   cl::Kernel kernel = session().kernel(program.file, program.options, "nearest_of_places");
-  session().launch(kernel, LaunchShape::line((places.size() + PHOTON_PLACES_AT_ONCE - 1) / PHOTON_PLACES_AT_ONCE), map.nodes,
-                   map.buckets, map.params, device_places, distance2, photon, found,
+  session().launch(kernel, LaunchShape::line((places.size() + PHOTON_PLACES_AT_ONCE - 1) / PHOTON_PLACES_AT_ONCE),
+                   map.nodes, map.buckets, map.params, device_places, distance2, photon, found,
                    static_cast<cl_uint>(places.size()));
   const auto d = session().download(distance2, places.size() * k);
   const auto p = session().download(photon, places.size() * k);
