@@ -8,7 +8,7 @@ namespace pointgi {
 
 namespace {
 
-void check(const ClusterTree& tree, const Link& link) {
+void check(const ClusterTree& tree, const Link& link, std::size_t point_shares) {
   const auto refuse = [&](const char* why) {
     throw std::invalid_argument("link of clusters " + std::to_string(link.a) + " and " + std::to_string(link.b) + ": " +
                                 why);
@@ -17,6 +17,9 @@ void check(const ClusterTree& tree, const Link& link) {
   if (link.a == link.b && (link.kind != LinkKind::near_ || tree.nodes[link.a].child_count != 0))
     refuse("only a leaf is linked to itself, and near");
   if (!(link.visible > 0.0f && link.visible <= 1.0f)) refuse("its visible share is not in (0, 1]");
+  if (link.point_shares != no_point_shares &&
+      std::size_t{link.point_shares} + tree.nodes[link.a].count + tree.nodes[link.b].count > point_shares)
+    refuse("the shares of its points are not there");
 }
 
 /// Area of the largest splat of each cluster.
@@ -42,7 +45,8 @@ float gap_squared(const Cluster& a, const Cluster& b) {
   return sum;
 }
 
-SourceLists rows_of(std::size_t clusters, View<Link> links, const std::vector<LinkKind>& kinds, LinkKind kind) {
+SourceLists rows_of(const ClusterTree& tree, View<Link> links, const std::vector<LinkKind>& kinds, LinkKind kind) {
+  const std::size_t clusters = tree.nodes.size();
   SourceLists lists;
   lists.begin.assign(clusters + 1, 0);
   for (std::size_t k = 0; k < links.size; ++k)
@@ -54,42 +58,60 @@ SourceLists rows_of(std::size_t clusters, View<Link> links, const std::vector<Li
     lists.begin[k + 1] += lists.begin[k];
   lists.source.resize(lists.begin.back());
   lists.share.resize(lists.begin.back());
+  lists.own_share.resize(lists.begin.back());
   std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
-  const auto add = [&](std::uint32_t receiver, std::uint32_t source, float share) {
+  const auto add = [&](std::uint32_t receiver, std::uint32_t source, const Link& link) {
+    const bool own = link.point_shares != no_point_shares;
+    const std::uint32_t skipped = receiver == link.a ? 0 : tree.nodes[link.a].count;
     lists.source[next[receiver]] = source;
-    lists.share[next[receiver]++] = share;
+    lists.share[next[receiver]] = link.visible;
+    lists.own_share[next[receiver]++] = own ? link.point_shares + skipped : no_point_shares;
   };
   for (std::size_t k = 0; k < links.size; ++k)
     if (kinds[k] == kind) {
-      add(links[k].a, links[k].b, links[k].visible);
-      if (links[k].a != links[k].b) add(links[k].b, links[k].a, links[k].visible);
+      add(links[k].a, links[k].b, links[k]);
+      if (links[k].a != links[k].b) add(links[k].b, links[k].a, links[k]);
     }
   return lists;
 }
 
 } // namespace
 
-InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, const Grids& grids,
-                                        const ListOptions& options) {
+InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, std::size_t point_shares,
+                                        const Grids& grids, const ListOptions& options) {
   if (links.size > 0x7fffffffu) throw std::invalid_argument("too many links for 32-bit lists");
   const std::vector<float> largest = largest_areas(tree);
   std::vector<LinkKind> kinds(links.size);
   parallel_ranges(links.size, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Link& link = links[k];
-      check(tree, link);
+      check(tree, link, point_shares);
       kinds[k] = link.kind;
       if (link.kind != LinkKind::far) continue;
       const Cluster &a = tree.nodes[link.a], &b = tree.nodes[link.b];
       const bool close = gap_squared(a, b) < FMM_CLOSE * std::max(largest[link.a], largest[link.b]);
       const double pairs = static_cast<double>(a.count) * b.count,
                    node_pairs = static_cast<double>(grids.of[link.a].count) * grids.of[link.b].count;
-      if (close || pairs < options.direct_below * node_pairs) kinds[k] = LinkKind::near_;
+      if (close || pairs < options.direct_below * node_pairs)
+        kinds[k] = LinkKind::near_;
+      else if (link.point_shares != no_point_shares)
+        kinds[k] = LinkKind::mid;
     }
   });
-  return {rows_of(tree.nodes.size(), links, kinds, LinkKind::far),
-          rows_of(tree.nodes.size(), links, kinds, LinkKind::mid),
-          rows_of(tree.nodes.size(), links, kinds, LinkKind::near_)};
+  return {rows_of(tree, links, kinds, LinkKind::far), rows_of(tree, links, kinds, LinkKind::mid),
+          rows_of(tree, links, kinds, LinkKind::near_)};
+}
+
+ExchangeCounts count_exchanges(const ClusterTree& tree, const InteractionLists& lists) {
+  ExchangeCounts counts;
+  counts.m2l = lists.far.source.size();
+  for (std::size_t k = 0; k < tree.nodes.size(); ++k) {
+    const std::uint64_t receivers = tree.nodes[k].count;
+    counts.m2p += receivers * (lists.mid.begin[k + 1] - lists.mid.begin[k]);
+    for (std::uint32_t e = lists.near_.begin[k]; e < lists.near_.begin[k + 1]; ++e)
+      counts.p2p += receivers * tree.nodes[lists.near_.source[e]].count;
+  }
+  return counts;
 }
 
 } // namespace pointgi

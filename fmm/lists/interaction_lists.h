@@ -10,11 +10,20 @@ struct SourceLists {
   std::vector<std::uint32_t> begin; ///< row k is [begin[k], begin[k + 1]); one more than there are clusters
   std::vector<std::uint32_t> source;
   std::vector<float> share;
+  std::vector<std::uint32_t> own_share; ///< where those of the receiver's points begin, or no_point_shares
 };
 
-/// Both directions of every link. A point reads the near and mid rows of its leaf and of all clusters above it.
+/// Both directions of every link. Partly visible far links whose points have shares of their own are mid. A point reads
+/// the near and mid rows of its leaf and of all clusters above it.
 struct InteractionLists {
   SourceLists far, mid, near_;
+};
+
+/// What one apply of the operator evaluates.
+struct ExchangeCounts {
+  std::uint64_t m2l = 0; ///< pairs of clusters, each direction one, by expansions
+  std::uint64_t m2p = 0; ///< points with the flux vector of a cluster
+  std::uint64_t p2p = 0; ///< points with points
 };
 
 struct ListOptions {
@@ -23,9 +32,13 @@ struct ListOptions {
   double direct_below = 1.5;
 };
 
+/// `point_shares`: how many there are for links to refer to.
 /// Throws std::invalid_argument on a link to a cluster that is not there, of a cluster with itself unless it is a near
-/// leaf, or with a share outside (0, 1].
-InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, const Grids& grids,
-                                        const ListOptions& options);
+/// leaf, or with a share outside (0, 1], or whose points' shares
+/// are not there.
+InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, std::size_t point_shares,
+                                        const Grids& grids, const ListOptions& options);
+
+ExchangeCounts count_exchanges(const ClusterTree& tree, const InteractionLists& lists);
 
 } // namespace pointgi

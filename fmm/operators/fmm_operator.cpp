@@ -34,10 +34,11 @@ void for_weights(const Grid& grid, const double x[3], const Use& use) {
 
 } // namespace
 
-FmmOperator::FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options)
+FmmOperator::FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options,
+                         View<std::uint8_t> point_shares)
     : tree_(tree), grids_(make_grids(tree, options.grid)),
-      lists_(make_interaction_lists(tree, links, grids_, options.lists)),
-      points_(tree.points.begin(), tree.points.end()), levels_(levels_of(tree)) {
+      lists_(make_interaction_lists(tree, links, point_shares.size, grids_, options.lists)),
+      point_shares_(point_shares), points_(tree.points.begin(), tree.points.end()), levels_(levels_of(tree)) {
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     if (tree.nodes[k].child_count == 0) leaves_.push_back(k);
   for (int value = 0; value < FMM_VALUES; ++value) {
@@ -115,6 +116,13 @@ void FmmOperator::receive_from_parent(std::uint32_t k) {
   }
 }
 
+/// The visible share of an entry of `rows` for a point, counted from the receiving cluster's first.
+double FmmOperator::share_of(const SourceLists& rows, std::uint32_t entry, std::uint32_t point_of_cluster) const {
+  const std::uint32_t own = rows.own_share[entry];
+  return own == no_point_shares ? static_cast<double>(rows.share[entry])
+                                : static_cast<double>(point_shares_[own + point_of_cluster]) / 255.0;
+}
+
 /// L2P, then the mid and near rows of the leaf and of all clusters above it.
 void FmmOperator::evaluate_leaf(std::uint32_t leaf, View<double> radiosity, double* irradiance) const {
   const Cluster& cluster = tree_.nodes[leaf];
@@ -126,19 +134,21 @@ void FmmOperator::evaluate_leaf(std::uint32_t leaf, View<double> radiosity, doub
         h[value / 3] -= inverse_pi * weight * p.n[value % 3] * local_[value][node];
     });
     for (std::uint32_t k = leaf;; k = tree_.nodes[k].parent) {
+      const std::uint32_t place = i - tree_.nodes[k].first_point;
       for (std::uint32_t entry = lists_.mid.begin[k]; entry < lists_.mid.begin[k + 1]; ++entry) {
         const ClusterFlux& source = fluxes_[lists_.mid.source[entry]];
         const Eigen::Vector3d r = source.centre - p.x;
         const double r2 = r.squaredNorm(), facing = p.n.dot(r);
         if (!(facing > 0.0)) continue;
-        const double scale = lists_.mid.share[entry] * inverse_pi * facing / (r2 * r2);
+        const double scale = share_of(lists_.mid, entry, place) * inverse_pi * facing / (r2 * r2);
         for (int c = 0; c < 3; ++c)
           if (source.judge[c].dot(r) < 0.0) h[c] -= scale * source.flux[c].dot(r);
       }
       for (std::uint32_t entry = lists_.near_.begin[k]; entry < lists_.near_.begin[k + 1]; ++entry) {
         const Cluster& source = tree_.nodes[lists_.near_.source[entry]];
+        const double visible = share_of(lists_.near_, entry, place);
         for (std::uint32_t j = source.first_point; j < source.first_point + source.count; ++j) {
-          const double share = lists_.near_.share[entry] * point_exchange(p, points_[j]);
+          const double share = visible * point_exchange(p, points_[j]);
           for (int c = 0; c < 3; ++c)
             h[c] += share * radiosity[3 * j + c];
         }

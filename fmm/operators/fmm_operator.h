@@ -16,9 +16,11 @@ struct FmmOptions {
 /// q_j = B_j A_j n_j, is interpolated between the clusters' grids.
 class FmmOperator : public RadiosityOperator {
 public:
-  /// Keeps what it needs of the tree's points and takes its own copy of the links' lists; `tree` must outlive it.
+  /// Keeps what it needs of the tree's points and takes its own copy of the links' lists; `tree` and `point_shares`
+  /// (VMap::point_shares, where links refer to them) must outlive it.
   /// Throws std::invalid_argument as make_grids() and make_interaction_lists() do.
-  FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options);
+  FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options,
+              View<std::uint8_t> point_shares = {});
 
   std::size_t points() const override { return points_.size(); }
   void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override;
@@ -33,11 +35,13 @@ private:
   void moments_of(std::uint32_t cluster, View<double> radiosity);
   void receive_far(std::uint32_t cluster);
   void receive_from_parent(std::uint32_t cluster);
+  double share_of(const SourceLists& rows, std::uint32_t entry, std::uint32_t point_of_cluster) const;
   void evaluate_leaf(std::uint32_t leaf, View<double> radiosity, double* irradiance) const;
 
   const ClusterTree& tree_;
   Grids grids_;
   InteractionLists lists_;
+  View<std::uint8_t> point_shares_;
   std::vector<ExchangePoint> points_;
   std::vector<std::vector<std::uint32_t>> levels_; ///< clusters of each level, the root first
   std::vector<std::uint32_t> leaves_;

@@ -8,24 +8,30 @@
 
 namespace pointgi {
 
-struct RenderOptions {
+/// What every command that computes light takes.
+struct LightOptions {
   std::string input;  ///< scene.toml or cloud
-  std::string output; ///< .exr; empty: the input's name in the working directory
-  std::string size;   ///< "WxH"
-  std::optional<int> spp;
-  std::string quality = "normal"; ///< draft: a quarter of the samples, high: four times
+  std::string output; ///< of render: .exr; empty: the input's name in the working directory; of bake: .ply
   std::optional<double> exposure;
-  std::string integrator = "pointgi"; ///< or "path": unbiased path tracing, the truth to measure others by
-  std::string paths;                  ///< of the path tracer: the classes that count (host/passes/light_paths.h)
   std::string device;
   std::optional<unsigned> seed;
   std::vector<std::string> overrides; ///< key.path=value
   std::string stats_file;
+  bool quiet = false;
+};
+
+struct RenderOptions : LightOptions {
+  std::string size; ///< "WxH"
+  std::optional<int> spp;
+  std::string quality = "normal";     ///< draft: a quarter of the samples, high: four times
+  std::string integrator = "pointgi"; ///< or "path": unbiased path tracing, the truth to measure others by
+  std::string paths;                  ///< of the path tracer: the classes that count (host/passes/light_paths.h)
   std::string trace_file;
   std::string pixel_bounds; ///< "x0,x1,y0,y1"
   std::string dump_folder;
-  bool quiet = false;
 };
+
+struct BakeOptions : LightOptions {};
 
 struct ProfileOptions {
   std::string input;  ///< scene.toml or cloud; not needed to list or write programs
@@ -48,6 +54,7 @@ struct CompareOptions {
 };
 
 ExitCode run_render(const RenderOptions& options);
+ExitCode run_bake(const BakeOptions& options);
 ExitCode run_profile(const ProfileOptions& options);
 ExitCode run_compare(const CompareOptions& options);
 ExitCode run_info(const std::string& file);

@@ -4,24 +4,52 @@
 #include "host/passes/radiosity.h"
 #include "host/scene/frame.h"
 #include <functional>
-#include <optional>
 
 namespace pointgi {
 
-/// What there is of indirect light for the picture.
+/// Light at the points of the pool, [points x 3, W/m² divided by the lighting's scale]; empty where no surface sends
+/// any.
 struct IndirectLight {
-  std::optional<Buffer<cl_float4>> irradiance; ///< of each point of the pool, from surfaces; absent: no such light
+  std::vector<float> from_surfaces; ///< H(B)
+  std::vector<float> direct;        ///< from lights; from splats that shine, too, unless they take part in the exchange
   LinkStatistics links;
+  ExchangeCounts counts;
   Solution solution;
+  std::uint64_t rays = 0; ///< that decided which points see each other
 };
 
-/// Runs `vmap` and `fmm` where the scene asks for radiosity ([radiosity]) and has light, and says of each stage that
-/// does not run why. `by_paths`: a path tracer makes the picture, which needs neither. Throws Error(input) for what
-/// this version does not have, Error(interrupted) when `stop` says so.
-IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                                  const Scene& scene, const Frame& frame, const DeviceLighting& lighting,
-                                  View<Splat> points, bool by_paths, StageLog& stages,
-                                  const std::function<bool()>& stop);
+/// The scene as the stages before have left it.
+struct IndirectRequest {
+  const TraversalVariant& variant;
+  const Scene& scene;
+  const Frame& frame;
+  const DeviceLighting& lighting;
+  View<Splat> points;         ///< of the pool
+  bool by_paths = false;      ///< a path tracer makes the picture
+  bool quiet = false;         ///< no progress
+  std::function<bool()> stop; ///< asked before every launch
+};
+
+/// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws Error(input)
+/// for what this version does not have, Error(interrupted) when `stop` says so.
+IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                  StageLog& stages);
+
+/// Whether direct light comes with the points' irradiance, as coarse as its splats (the thesis' way, method.md §6).
+bool direct_light_by_radiosity(const Scene& scene);
+
+/// The irradiance that the picture interpolates: from surfaces, and the direct light where it comes that way.
+Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light, const Scene& scene);
+
+/// IndirectLight::direct where no stage of these has found it, because no surface sends any light to another.
+std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request);
+
+/// pi L_e: radiosity that each point shines with, [points x 3] as IndirectLight.
+std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points);
+
+/// Why vmap and fmm do not run, in a few words; empty when they do: the scene has light, and surfaces that send each
+/// other some of it.
+std::string reason_against_radiosity(const IndirectRequest& request);
 
 /// The normal field of the specular and glossy splats, as the device takes it (kernels/lib/pools.cl): the stage
 /// `normals`; absent where there are none, and the stage is skipped.

@@ -74,6 +74,51 @@ std::string unknown_words(CLI::App& app) {
                        : "; did you mean \"" + near + "\"?");
 }
 
+void add_device_options(CLI::App& command, std::string& device, Common& common) {
+  command.add_option("--device", device,
+                     "index, part of a name, cpu or gpu; default: a GPU if there is one (see: pointgi devices)");
+  command.add_option("--threads", common.threads, "threads of the host and of a CPU device")
+      ->check(CLI::Range(1, 1024));
+}
+
+/// What render and bake share; returns the option of the output.
+CLI::Option* add_light_options(CLI::App& command, LightOptions& options, Common& common, const std::string& input,
+                               const std::string& output, const std::string& exposure) {
+  command.add_option("SCENE.toml|CLOUD.ply", options.input, input)->required();
+  CLI::Option* to = command.add_option("-o,--output", options.output, output);
+  command.add_option("--exposure", options.exposure, exposure);
+  add_device_options(command, options.device, common);
+  command.add_option("--seed", options.seed, "seed of the samples (default 1)");
+  command
+      .add_option("--set", options.overrides,
+                  "a value of the scene file, e.g. camera.fov_deg=30 or cloud.0.normals=flip; may repeat")
+      ->take_all()
+      ->expected(1);
+  command.add_option("--stats", options.stats_file, "write figures of the run to this JSON file");
+  return to;
+}
+
+void add_render_options(CLI::App& command, RenderOptions& render) {
+  command.add_option("--size", render.size, "image size, WIDTHxHEIGHT (default 640x480)");
+  command.add_option("--spp", render.spp, "samples a pixel (default 32)")->check(CLI::Range(1, 65536));
+  command
+      .add_option("--quality", render.quality,
+                  "samples a pixel: draft (a quarter of the scene's), normal, high (four times)")
+      ->check(CLI::IsMember({"draft", "normal", "high"}));
+  command
+      .add_option("--integrator", render.integrator,
+                  "how light is computed: pointgi (default), or path: slow unbiased path tracing, the truth to "
+                  "measure by; ends paths by roulette, and at render.max_depth surface points where the scene says so")
+      ->check(CLI::IsMember({"pointgi", "path"}));
+  command.add_option("--paths", render.paths,
+                     "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
+                     "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, + one or more");
+  command.add_option("--trace", render.trace_file, "write stages and kernels as a Chrome trace to this JSON file");
+  command.add_option("--pixelbounds", render.pixel_bounds,
+                     "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
+  command.add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Global illumination of point clouds, without meshing them."};
   app.set_version_flag("--version", "pointgi " POINTGI_VERSION);
@@ -85,42 +130,18 @@ int run(int argc, char** argv) {
   app.add_flag("--quiet", render.quiet, "only warnings and results");
 
   CLI::App* render_command = app.add_subcommand("render", "render a scene, or a bare cloud");
-  render_command->add_option("SCENE.toml|CLOUD.ply", render.input, "what to render")->required();
-  render_command->add_option(
-      "-o,--output", render.output,
-      "the picture, OUT.exr, and OUT.png beside it; default: the input's name, here; replaces older ones");
-  render_command->add_option("--size", render.size, "image size, WIDTHxHEIGHT (default 640x480)");
-  render_command->add_option("--spp", render.spp, "samples a pixel (default 32)")->check(CLI::Range(1, 65536));
-  render_command
-      ->add_option("--quality", render.quality,
-                   "samples a pixel: draft (a quarter of the scene's), normal, high (four times)")
-      ->check(CLI::IsMember({"draft", "normal", "high"}));
-  render_command->add_option("--exposure", render.exposure, "brightens the PNG by this many stops (default 0)");
-  render_command
-      ->add_option("--integrator", render.integrator,
-                   "how light is computed: pointgi (default), or path: slow unbiased path tracing, the truth to "
-                   "measure by; ends paths by roulette, and at render.max_depth surface points where the scene says so")
-      ->check(CLI::IsMember({"pointgi", "path"}));
-  render_command->add_option("--paths", render.paths,
-                             "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
-                             "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, + one or more");
-  render_command->add_option(
-      "--device", render.device,
-      "index, part of a name, cpu or gpu; default: a GPU if there is one (see: pointgi devices)");
-  render_command->add_option("--threads", common.threads, "threads of the host and of a CPU device")
-      ->check(CLI::Range(1, 1024));
-  render_command->add_option("--seed", render.seed, "seed of the samples (default 1)");
-  render_command
-      ->add_option("--set", render.overrides,
-                   "a value of the scene file, e.g. camera.fov_deg=30 or cloud.0.normals=flip; may repeat")
-      ->take_all()
-      ->expected(1);
-  render_command->add_option("--stats", render.stats_file, "write figures of the run to this JSON file");
-  render_command->add_option("--trace", render.trace_file,
-                             "write stages and kernels as a Chrome trace to this JSON file");
-  render_command->add_option("--pixelbounds", render.pixel_bounds,
-                             "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
-  render_command->add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
+  add_light_options(*render_command, render, common, "what to render",
+                    "the picture, OUT.exr, and OUT.png beside it; default: the input's name, here; replaces older ones",
+                    "brightens the PNG by this many stops (default 0)");
+  add_render_options(*render_command, render);
+
+  BakeOptions bake;
+  CLI::App* bake_command =
+      app.add_subcommand("bake", "compute the light once for all views, and write it as a point cloud");
+  add_light_options(*bake_command, bake, common, "what to light",
+                    "the lit cloud, LIT.ply: colours, and radiosity [W/m2] as scalar fields",
+                    "brightens the colours by this many stops (default 0); the radiosity stays as it is")
+      ->required();
 
   ProfileOptions profile;
   CLI::App* profile_command =
@@ -129,10 +150,7 @@ int run(int argc, char** argv) {
   profile_command->add_option(
       "-o,--output", profile.output,
       "folder for profile.json, profile.md (the table) and trace.json (Chrome trace); default: the table alone");
-  profile_command->add_option("--device", profile.device,
-                              "index, part of a name, cpu or gpu; default: a GPU if there is one");
-  profile_command->add_option("--threads", common.threads, "threads of the host and of a CPU device")
-      ->check(CLI::Range(1, 1024));
+  add_device_options(*profile_command, profile.device, common);
   profile_command->add_option("--filter", profile.filter,
                               "only variants whose names contain this; several parts, separated by commas, must all "
                               "be there (wide,leaf64); the best is then stored only with --store");
@@ -186,6 +204,9 @@ int run(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then a write error, reported as one
   render.device = environment_or(render.device, "POINTGI_DEVICE");
   if (render_command->parsed()) return code_of(run_render(render));
+  bake.device = environment_or(bake.device, "POINTGI_DEVICE");
+  bake.quiet = render.quiet;
+  if (bake_command->parsed()) return code_of(run_bake(bake));
   profile.device = environment_or(profile.device, "POINTGI_DEVICE");
   profile.quiet = render.quiet;
   if (profile_command->parsed()) return code_of(run_profile(profile));

@@ -11,24 +11,21 @@ namespace {
 constexpr double default_radius = 0.05;
 
 /// Empty when photons are sent.
-std::string reason_against(const Scene& scene, const DeviceLighting& lighting, bool specular, bool by_paths) {
+std::string reason_against(const IndirectRequest& request, bool specular) {
   if (!specular) return "no specular material";
-  if (by_paths) return "paths are traced";
-  if (lighting.delta.empty() && lighting.emitters.empty() && !lighting.has_environment)
-    return "the scene has no light and no emission";
-  if (scene.caustics.photons == 0) return "caustics.photons = 0";
+  if (request.by_paths) return "the path tracer makes the picture";
+  if (!request.lighting.has_light()) return "the scene has no light and no emission";
+  if (request.scene.caustics.photons == 0) return "caustics.photons = 0";
   return {};
 }
 
 } // namespace
 
-Caustics run_photon_stage(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                          const Scene& scene, const Frame& frame, const DeviceLighting& lighting, View<Splat> points,
-                          const Buffer<cl_float4>* normal_field, bool by_paths, StageLog& stages,
-                          const std::function<bool()>& stop) {
+Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                          const Buffer<cl_float4>* normal_field, StageLog& stages) {
   Caustics caustics;
-  const CausticSettings& settings = scene.caustics;
-  const std::string reason = reason_against(scene, lighting, normal_field != nullptr, by_paths);
+  const CausticSettings& settings = request.scene.caustics;
+  const std::string reason = reason_against(request, normal_field != nullptr);
   if (!reason.empty()) {
     if (settings.place && settings.photons > 0)
       spdlog::warn("{}: [caustics] has no effect: {}", settings.place->text(), reason);
@@ -36,13 +33,13 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Trav
     return caustics;
   }
   stages.start("photon");
-  TracedPhotons traced = send_photons(session, pools, variant, lighting, photon_sources(lighting, points), points,
-                                      *normal_field, settings, frame.side, stop);
-  if (traced.stopped)
-    throw Error(ExitCode::interrupted, "interrupted before the photons had flown; nothing was written");
+  TracedPhotons traced =
+      send_photons(session, pools, request.variant, request.lighting, photon_sources(request.lighting, request.points),
+                   request.points, *normal_field, settings, request.frame.side, request.stop);
+  if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
   caustics.ledger = traced.ledger;
   if (!traced.stored.empty()) {
-    const double radius = settings.max_radius ? *settings.max_radius / frame.side : default_radius;
+    const double radius = settings.max_radius ? *settings.max_radius / request.frame.side : default_radius;
     caustics.map =
         upload_photon_map(session, build_photon_map(traced.stored), static_cast<unsigned>(settings.gather_k), radius);
   }

@@ -40,24 +40,38 @@ Progress::~Progress() {
   if (drawn_ && terminal_) std::fprintf(stderr, "\r\033[K"); // what follows is the result, not the bar
 }
 
-void Progress::update(double share) {
-  if (quiet_) return;
+bool Progress::due() {
+  if (quiet_) return false;
   const auto now = std::chrono::steady_clock::now();
-  if (seconds_between(last_, now) < (terminal_ ? bar_interval : plain_interval)) return;
+  if (seconds_between(last_, now) < (terminal_ ? bar_interval : plain_interval)) return false;
   last_ = now;
+  return true;
+}
+
+void Progress::draw(const std::string& line) {
   drawn_ = true;
-  const double elapsed = seconds_between(start_, now), done = std::clamp(share, 1e-6, 1.0);
+  std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
+  std::fflush(stderr);
+}
+
+void Progress::update(double share) {
+  if (!due()) return;
+  const double elapsed = seconds_between(start_, last_), done = std::clamp(share, 1e-6, 1.0);
   const std::string times =
       duration_text(elapsed) + " elapsed, " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
   const int percent = static_cast<int>(100.0 * done);
   if (!terminal_) {
-    std::fprintf(stderr, "%s: %d %%, %s\n", stage_.c_str(), percent, times.c_str());
+    draw(stage_ + ": " + std::to_string(percent) + " %, " + times);
     return;
   }
-  const int filled = static_cast<int>(bar_width * done);
-  std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%  %s", stage_.c_str(), std::string(filled, '#').c_str(),
-               std::string(bar_width - filled, ' ').c_str(), percent, times.c_str());
-  std::fflush(stderr);
+  const auto filled = static_cast<std::size_t>(bar_width * done);
+  char number[16];
+  std::snprintf(number, sizeof number, "%3d %%  ", percent);
+  draw(stage_ + " [" + std::string(filled, '#') + std::string(bar_width - filled, ' ') + "] " + number + times);
+}
+
+void Progress::tell(const std::string& done) {
+  if (due()) draw(stage_ + ": " + done + ", " + duration_text(seconds_between(start_, last_)) + " elapsed");
 }
 
 } // namespace pointgi

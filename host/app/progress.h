@@ -15,8 +15,13 @@ public:
 
   /// `share` done, 0..1.
   void update(double share);
+  /// `done` so far, "12 applies", where nobody knows how much there will be.
+  void tell(const std::string& done);
 
 private:
+  bool due();
+  void draw(const std::string& line);
+
   std::string stage_;
   bool quiet_;
   bool terminal_;

@@ -2,13 +2,11 @@
 #include "host/app/indirect_stages.h"
 #include "host/app/interrupt.h"
 #include "host/app/photon_stage.h"
-#include "host/app/prepare.h"
+#include "host/app/prepared_scene.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
 #include "host/cl/binary_cache.h"
-#include "host/passes/build_pools.h"
-#include "host/passes/tuned.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,8 +33,8 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
 }
 
 /// Flags win over the scene file; they become overrides, so that one place checks both.
-std::vector<std::string> overrides_of(const RenderOptions& options) {
-  std::vector<std::string> overrides = options.overrides;
+std::vector<std::string> all_overrides_of(const RenderOptions& options) {
+  std::vector<std::string> overrides = overrides_of(options);
   if (!options.size.empty()) {
     const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
     if (size[0] < 1 || size[1] < 1)
@@ -44,8 +42,6 @@ std::vector<std::string> overrides_of(const RenderOptions& options) {
     overrides.push_back("render.size=[" + std::to_string(size[0]) + ", " + std::to_string(size[1]) + "]");
   }
   if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
-  if (options.seed) overrides.push_back("render.seed=" + std::to_string(*options.seed));
-  if (options.exposure) overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
   return overrides;
 }
 
@@ -119,29 +115,11 @@ void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& s
         100.0 * backs);
 }
 
-/// Device memory as the variant wants it, plain buffers where the device's images are too small.
-DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
-  if (!images_fit(session.info(), pools, variant.storage)) {
-    spdlog::warn("the device's images are missing or too small for the octree: plain buffers are used instead");
-    variant.storage = PoolStorage::buffer;
-  }
-  return upload_pools(session, pools, variant.storage);
-}
-
-/// The scene's wishes first, then what a profile of this device found, then the defaults of its class.
-VariantChoice choose_for(const Scene& scene, const DeviceInfo& device) {
-  const StoredWinner stored = stored_winner(device);
-  if (!stored.warning.empty()) spdlog::warn("{}", stored.warning);
-  const VariantChoice choice = choose_variant(scene.traversal, scene.octree, device, stored.file);
-  spdlog::info("variant: {} ({})", name_of(choice.variant), choice.source);
-  return choice;
-}
-
 Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path" && !options.paths.empty())
     throw Error(ExitCode::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
-  Scene scene = load_any(options.input, overrides_of(options));
+  Scene scene = load_any(options.input, all_overrides_of(options));
   if (!options.spp && options.quality != "normal") {
     const double factor = options.quality == "draft" ? 0.25 : 4.0;
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
@@ -192,52 +170,43 @@ ExitCode run_render(const RenderOptions& options) {
   if (!options.trace_file.empty()) session.record_launches();
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
 
-  stages.start("cloud");
-  PlacedSplats placed = load_and_place(scene, !is_scene_file(options.input));
-  stages.finish(placed.splats.size(), "points");
-
-  stages.start("octree");
-  VariantChoice choice = choose_for(scene, session.info());
-  TraversalVariant& variant = choice.variant;
-  const OctreePools pools = build_pools(placed.splats, variant);
-  placed.splats = {};
-  std::vector<std::uint32_t> ids(source_of(pools).begin(), source_of(pools).end());
-  for (std::uint32_t& id : ids)
-    id = placed.id[id];
-  const DevicePools on_device = upload(session, pools, variant);
+  const PreparedScene ready = prepare_scene(session, scene, !is_scene_file(options.input), stages);
+  const TraversalVariant& variant = ready.choice.variant;
+  const OctreePools& pools = ready.pools;
+  const DeviceLighting& lighting = ready.lighting;
   stats.octree = summary_of(pools);
-  stages.finish(stats.octree.nodes, "nodes");
-
-  const DeviceLighting lighting = device_lighting(scene, placed.frame, points_of(pools));
   const std::optional<LightPaths> paths = paths_of(options, scene);
   catch_interrupts();
-  const IndirectLight indirect = run_indirect_stages(session, on_device, variant, scene, placed.frame, lighting,
-                                                     points_of(pools), paths.has_value(), stages, interrupted);
+  const IndirectRequest wanted{variant,           scene,         ready.frame, lighting, points_of(pools),
+                               paths.has_value(), options.quiet, interrupted};
+  const IndirectLight indirect = run_indirect_stages(session, ready.on_device, wanted, stages);
   const std::optional<Buffer<cl_float4>> field = normal_field_of(session, lighting, points_of(pools), stages);
-  const Caustics caustics =
-      run_photon_stage(session, on_device, variant, scene, placed.frame, lighting, points_of(pools),
-                       field ? &*field : nullptr, paths.has_value(), stages, interrupted);
-  RenderRequest request{window, lighting, placed.frame, ids, variant, paths};
-  request.irradiance = indirect.irradiance ? &*indirect.irradiance : nullptr;
+  const Caustics caustics = run_photon_stage(session, ready.on_device, wanted, field ? &*field : nullptr, stages);
+  RenderRequest request{window, lighting, ready.frame, ready.ids, variant, paths};
+  Buffer<cl_float4> irradiance;
+  if (!indirect.from_surfaces.empty()) {
+    irradiance = upload_irradiance(session, indirect, scene);
+    request.irradiance = &irradiance;
+    request.shadow_rays = !direct_light_by_radiosity(scene);
+  }
   request.normal_field = field ? &*field : nullptr;
   request.photons = caustics.map ? &*caustics.map : nullptr;
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
                        film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
-  const bool written = render_picture(session, on_device, request, writer, options.quiet, stats.render, stages);
+  const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)
     throw Error(ExitCode::interrupted, "interrupted before the first rows were finished; nothing was written");
-  warn_of_view(stats.render, placed.frame, scene);
+  warn_of_view(stats.render, ready.frame, scene);
   if (!options.stats_file.empty()) {
     stats.command = "render";
     stats.integrator = options.integrator;
-    stats.variant = choice;
+    stats.variant = ready.choice;
     stats.scene = &scene;
     stats.session = &session;
-    stats.links = indirect.links;
-    stats.solution = indirect.solution;
+    stats.indirect = &indirect;
     stats.photons = caustics.ledger;
-    stats.photon_watts = lighting.radiance.scale * placed.frame.side * placed.frame.side;
+    stats.photon_watts = lighting.radiance.scale * ready.frame.side * ready.frame.side;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }

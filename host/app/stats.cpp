@@ -51,6 +51,39 @@ nlohmann::json photons_json(const PhotonLedger& l, double watts) {
             {"cut", power(l.cut_power)}}}};
 }
 
+void add_radiosity(const IndirectLight& light, const RadiositySettings& settings, nlohmann::json& out) {
+  out["radiosity"] = {{"method", settings.method},
+                      {"direct_light", settings.direct_light},
+                      {"iterations", light.solution.applies},
+                      {"residual", light.solution.residual},
+                      {"rays", light.rays},
+                      {"converged", light.solution.end == SolveEnd::converged}};
+  if (settings.method != "fmm") return;
+  out["radiosity"]["order"] = settings.order;
+  out["radiosity"]["m2l"] = light.counts.m2l;
+  out["radiosity"]["m2p"] = light.counts.m2p;
+  out["radiosity"]["p2p"] = light.counts.p2p;
+  const LinkStatistics& l = light.links;
+  out["vmap"] = {{"pairs_tested", l.pairs_tested},
+                 {"links", l.far + l.mid + l.near_},
+                 {"far", l.far},
+                 {"mid", l.mid},
+                 {"near", l.near_},
+                 {"rays", l.rays}};
+}
+
+void add_render(const Stats& stats, nlohmann::json& out) {
+  const RenderTotals& r = stats.render;
+  out["render"] = {
+      {"integrator", stats.integrator},
+      {"rays", r.rays},
+      {"eye_rays", r.eye_rays},
+      {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
+      {"eye_mrays_per_s", r.eye_seconds > 0.0 ? 1e-6 * static_cast<double>(r.eye_rays) / r.eye_seconds : 0.0},
+      {"back_face_share", r.back_face_share()},
+      {"interrupted", r.interrupted}};
+}
+
 } // namespace
 
 void write_stats(const std::string& path, const Stats& stats, const StageLog& stages) {
@@ -72,29 +105,9 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
                    {"bytes", octree.bytes}};
   out["variant"] = variant_json(stats.variant.variant);
   out["variant"]["source"] = stats.variant.source;
-  const RenderTotals& r = stats.render;
-  out["render"] = {
-      {"integrator", stats.integrator},
-      {"rays", r.rays},
-      {"eye_rays", r.eye_rays},
-      {"mrays_per_s", r.device_seconds > 0.0 ? 1e-6 * static_cast<double>(r.rays) / r.device_seconds : 0.0},
-      {"eye_mrays_per_s", r.eye_seconds > 0.0 ? 1e-6 * static_cast<double>(r.eye_rays) / r.eye_seconds : 0.0},
-      {"back_face_share", r.back_face_share()},
-      {"interrupted", r.interrupted}};
-  if (stats.solution.applies > 0) {
-    const LinkStatistics& l = stats.links;
-    out["vmap"] = {{"pairs_tested", l.pairs_tested},
-                   {"links", l.far + l.mid + l.near_},
-                   {"far", l.far},
-                   {"mid", l.mid},
-                   {"near", l.near_},
-                   {"rays", l.rays}};
-    out["radiosity"] = {{"method", stats.scene->radiosity.method},
-                        {"order", stats.scene->radiosity.order},
-                        {"iterations", stats.solution.applies},
-                        {"residual", stats.solution.residual},
-                        {"converged", stats.solution.end == SolveEnd::converged}};
-  }
+  if (stats.command == "render") add_render(stats, out);
+  if (stats.indirect != nullptr && stats.indirect->solution.applies > 0)
+    add_radiosity(*stats.indirect, stats.scene->radiosity, out);
   if (stats.photons) out["photons"] = photons_json(*stats.photons, stats.photon_watts);
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())

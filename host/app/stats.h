@@ -1,12 +1,11 @@
 #pragma once
-#include "fmm/solve/solve.h"
+#include "host/app/indirect_stages.h"
 #include "host/app/stages.h"
 #include "host/cl/session.h"
 #include "host/passes/photon.h"
 #include "host/passes/render.h"
 #include "host/passes/tuned.h"
 #include "octree/pack/pools.h"
-#include "octree/vmap/make_links.h"
 #include <nlohmann/json.hpp>
 
 namespace pointgi {
@@ -17,11 +16,10 @@ struct Stats {
   const Scene* scene = nullptr;
   OctreeSummary octree;
   const Session* session = nullptr;
-  RenderTotals render;
-  LinkStatistics links;
-  Solution solution;                   ///< of radiosity; without applies where there was none
-  std::optional<PhotonLedger> photons; ///< absent: none were sent
-  double photon_watts = 1.0;           ///< W of the ledger's unit
+  RenderTotals render;                     ///< of the command render
+  const IndirectLight* indirect = nullptr; ///< null, or without applies: there was none
+  std::optional<PhotonLedger> photons;     ///< absent: none were sent
+  double photon_watts = 1.0;               ///< W of the ledger's unit
   VariantChoice variant;
   double seconds = 0.0;
 };

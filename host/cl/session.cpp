@@ -195,6 +195,7 @@ void Session::refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl:
 }
 
 double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments) {
+  if (before_launch_) before_launch_();
   try {
     check_launch(kernel, device_, info_, shape, arguments);
     cl::Event event;

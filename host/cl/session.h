@@ -3,6 +3,7 @@
 #include "host/cl/device.h"
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -114,6 +115,9 @@ public:
   std::size_t programs_from_cache() const { return from_cache_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
 
+  /// From now on called before every launch: it may show progress, or throw to end the work there. Empty: nothing is.
+  void before_launches(std::function<void()> call) { before_launch_ = std::move(call); }
+
   /// Writes every program built from now on, as the compiler sees it, and its options to this folder (--dump-kernels).
   void dump_kernels_to(const std::string& folder) { dump_folder_ = folder; }
 
@@ -151,6 +155,7 @@ private:
   std::size_t compiled_ = 0;
   std::size_t from_cache_ = 0;
   std::string dump_folder_;
+  std::function<void()> before_launch_;
   bool recording_ = false;
   std::string label_;
   std::vector<LaunchRecord> launches_;

@@ -1,4 +1,5 @@
 #include "host/passes/fmm.h"
+#include "host/passes/point_planes.h"
 #include "host/passes/variant.h"
 #include <algorithm>
 #include <stdexcept>
@@ -6,9 +7,6 @@
 namespace pointgi {
 
 namespace {
-
-/// A launch aims at this many seconds: short for a watchdog or a Ctrl-C, long against the cost of launching.
-constexpr double launch_seconds = 0.1;
 
 std::vector<FmmCluster> device_clusters(const ClusterTree& tree) {
   std::vector<FmmCluster> clusters;
@@ -34,23 +32,11 @@ std::vector<FmmGrid> device_grids(const Grids& grids) {
   return device;
 }
 
-/// Positions, normals and areas as seven planes, `stride` apart, zero behind the last point.
-std::vector<cl_float> point_planes(View<ExchangePoint> points, std::size_t stride) {
-  std::vector<cl_float> planes(7 * stride, 0.0f);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    for (int a = 0; a < 3; ++a) {
-      planes[a * stride + i] = static_cast<float>(points[i].x[a]);
-      planes[(3 + a) * stride + i] = static_cast<float>(points[i].n[a]);
-    }
-    planes[6 * stride + i] = static_cast<float>(points[i].area);
-  }
-  return planes;
-}
-
 } // namespace
 
 DeviceFmm::Rows DeviceFmm::upload(const SourceLists& lists) {
-  return {session_.upload(lists.begin), session_.upload(lists.source), session_.upload(lists.share)};
+  return {session_.upload(lists.begin), session_.upload(lists.source), session_.upload(lists.share),
+          session_.upload(lists.own_share)};
 }
 
 DeviceFmm::Jobs DeviceFmm::make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs) {
@@ -125,17 +111,20 @@ void DeviceFmm::make_point_jobs() {
   interpolate_ = make_jobs(items, nodes);
 }
 
-DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options)
+DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options,
+                     View<std::uint8_t> point_shares)
     : session_(session), tree_(tree), grids_(make_grids(tree, options.grid)),
-      lists_(make_interaction_lists(tree, links, grids_, options.lists)),
+      lists_(make_interaction_lists(tree, links, point_shares.size, grids_, options.lists)),
       points_(tree.points.begin(), tree.points.end()), nodes_(static_cast<cl_uint>(grids_.nodes())),
-      stride_(static_cast<cl_uint>((points_.size() + FMM_LANES - 1) / FMM_LANES * FMM_LANES + FMM_LANES)),
-      group_(session.info().is_cpu ? 8 : 32) {
+      stride_(plane_stride(points_.size())), group_(session.info().is_cpu ? 8 : 32) {
   make_node_jobs();
   make_point_jobs();
   far_rows_ = upload(lists_.far);
   mid_rows_ = upload(lists_.mid);
   near_rows_ = upload(lists_.near_);
+  std::vector<cl_uchar> shares(point_shares.begin(), point_shares.end());
+  shares.resize(shares.size() + FMM_LANES); // blocks read past the last point
+  point_shares_ = session_.upload(shares);
   cluster_buffer_ = session_.upload(device_clusters(tree));
   grid_buffer_ = session_.upload(device_grids(grids_));
   std::vector<cl_float> positions;
@@ -162,7 +151,7 @@ template <class Launch>
 void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
   const std::size_t all = jobs.cost.size() - 1;
   for (std::size_t first = 0; first < all;) {
-    const double until = jobs.cost[first] + jobs.pairs_per_second * launch_seconds;
+    const double until = jobs.cost[first] + jobs.pace.of_a_launch();
     const auto end = std::upper_bound(jobs.cost.begin() + first + 1, jobs.cost.end(), until);
     const std::size_t fits = static_cast<std::size_t>(end - jobs.cost.begin()) - 1 - first;
     // Not fewer than keep the device busy, even if that takes longer.
@@ -170,9 +159,7 @@ void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
     const double seconds =
         launch(LaunchShape::line(count, group_), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     device_seconds_ += seconds;
-    if (seconds > 0.01 * launch_seconds)
-      jobs.pairs_per_second = std::clamp((jobs.cost[first + count] - jobs.cost[first]) / seconds,
-                                         0.25 * jobs.pairs_per_second, 4.0 * jobs.pairs_per_second);
+    jobs.pace.learn(jobs.cost[first + count] - jobs.cost[first], seconds);
     first += count;
   }
 }
@@ -194,14 +181,9 @@ FmmFlux device_flux(const ClusterFlux& f) {
 } // namespace
 
 void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) {
-  if (radiosity.size != 3 * points_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
+  const auto flux = session_.upload(flux_planes(radiosity, points_, stride_));
   if (judge == Judge::before && !judged_) throw std::invalid_argument("no radiosity was judged before");
   judged_ = true;
-  std::vector<cl_float> planes(3 * static_cast<std::size_t>(stride_), 0.0f);
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      planes[static_cast<std::size_t>(c) * stride_ + i] = static_cast<float>(radiosity[3 * i + c] * points_[i].area);
-  const auto flux = session_.upload(planes);
   update_cluster_fluxes(tree_, points_, radiosity, judge, fluxes_);
   std::vector<FmmFlux> cluster_planes(fluxes_.size());
   std::transform(fluxes_.begin(), fluxes_.end(), cluster_planes.begin(), device_flux);
@@ -231,15 +213,12 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
   });
   in_pieces(read_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
     return session_.launch(receive_points_, shape, read_.items, first, count, cluster_buffer_, point_buffer_, stride_,
-                           flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, near_rows_.begin,
-                           near_rows_.source, near_rows_.share, irradiance_);
+                           flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, mid_rows_.own_share,
+                           near_rows_.begin, near_rows_.source, near_rows_.share, near_rows_.own_share, point_shares_,
+                           irradiance_);
   });
 
-  const std::vector<cl_float> h = session_.download(irradiance_, irradiance_.size);
-  irradiance.resize(3 * points_.size());
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      irradiance[3 * i + c] = h[static_cast<std::size_t>(c) * stride_ + i];
+  irradiance = rows_of_planes(session_.download(irradiance_, irradiance_.size), points_.size(), stride_);
 }
 
 } // namespace pointgi

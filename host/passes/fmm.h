@@ -2,6 +2,7 @@
 /// H(B) by the fast multipole method on the device (method.md section 4; kernels/fmm).
 #include "fmm/operators/fmm_operator.h"
 #include "host/cl/session.h"
+#include "host/passes/pace.h"
 
 namespace pointgi {
 
@@ -11,7 +12,8 @@ class DeviceFmm : public RadiosityOperator {
 public:
   /// Uploads points, grids and lists, and builds the kernels. `session` and `tree` must outlive it. Throws
   /// std::invalid_argument as FmmOperator does, Error(device) or Error(memory) as Session does.
-  DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options);
+  DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links, const FmmOptions& options,
+            View<std::uint8_t> point_shares = {});
 
   std::size_t points() const override { return points_.size(); }
   void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override;
@@ -24,12 +26,13 @@ private:
   /// Work-items that run one after another in launches of about the same time.
   struct Jobs {
     Buffer<cl_uint4> items;
-    std::vector<double> cost;      ///< of the jobs before this one, in pairs; one more than there are jobs
-    double pairs_per_second = 2e7; ///< learnt from launches
+    std::vector<double> cost; ///< of the jobs before this one, in pairs; one more than there are jobs
+    Pace pace{2e7};           ///< pairs
   };
   struct Rows {
     Buffer<cl_uint> begin, source;
     Buffer<cl_float> share;
+    Buffer<cl_uint> own_share;
   };
 
   Jobs make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs);
@@ -55,6 +58,7 @@ private:
   Jobs leaves_, far_;           ///< blocks of nodes, as those above
   Jobs interpolate_, read_;     ///< blocks of points
   Rows far_rows_, mid_rows_, near_rows_;
+  Buffer<cl_uchar> point_shares_;
   Buffer<FmmCluster> cluster_buffer_;
   Buffer<FmmGrid> grid_buffer_;
   Buffer<cl_float> node_buffer_, point_buffer_;

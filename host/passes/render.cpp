@@ -133,7 +133,8 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
   TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
-                     request.irradiance, request.normal_field, request.has_caustics() ? request.photons : nullptr);
+                     request.irradiance, request.shadow_rays, request.normal_field,
+                     request.has_caustics() ? request.photons : nullptr);
   const std::size_t channels =
       film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()).size();
   const PixelWindow& window = request.window;

@@ -39,8 +39,9 @@ struct RenderRequest {
   const Frame& frame;
   View<std::uint32_t> point_ids; ///< id to write for each point of the pool
   TraversalVariant variant;
-  std::optional<LightPaths> paths;                 ///< by path tracing, of these; else direct light and `irradiance`
-  const Buffer<cl_float4>* irradiance = nullptr;   ///< of each point of the pool, from surfaces; null: none
+  std::optional<LightPaths> paths;               ///< by path tracing, of these; else direct light and `irradiance`
+  const Buffer<cl_float4>* irradiance = nullptr; ///< of each point of the pool, from surfaces; null: none
+  bool shadow_rays = true; ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
   const Buffer<cl_float4>* normal_field = nullptr; ///< slopes of each point's normal; null: nothing is specular
 
   const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none

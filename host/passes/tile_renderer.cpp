@@ -6,14 +6,15 @@ namespace pointgi {
 
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
-                           const Buffer<cl_float4>* irradiance, const Buffer<cl_float4>* normal_field,
+                           const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
                            const DevicePhotonMap* photons)
     : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping),
       eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
       irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field), photons_(photons) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
-  SceneFeatures features{!lighting.delta.empty(), !lighting.emitters.empty(), lighting.has_environment,
-                         irradiance_ != nullptr};
+  const bool asks_lights = paths || shadow_rays; // without, splats that shine are still seen, and so is the sky
+  SceneFeatures features{asks_lights && !lighting.delta.empty(), !lighting.emitters.empty(),
+                         asks_lights && lighting.has_environment, irradiance_ != nullptr, asks_lights};
   if (normal_field_ != nullptr) {
     features.specular = true;
     features.glass = lighting.has_type(MATERIAL_GLASS);

@@ -18,12 +18,13 @@ struct TileSeconds {
 class TileRenderer {
 public:
   /// `side`: of the root cube, world units; `paths`: by path tracing; else
-  /// `irradiance`, of each point, is reflected too where it is there. Without a `normal_field` no surface is specular:
-  /// all but diffuse ones look black. Builds the programs where they are not built yet.
+  /// `irradiance`, of each point, is reflected too where it is there, and instead of shadow rays' light without
+  /// `shadow_rays`. Without a `normal_field` no surface is specular: all but diffuse ones look black.
+  /// Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
-               const Buffer<cl_float4>* irradiance = nullptr, const Buffer<cl_float4>* normal_field = nullptr,
-               const DevicePhotonMap* photons = nullptr);
+               const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
+               const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr);
 
   pg_uint samples() const { return params_.samples; }
 

@@ -23,8 +23,9 @@ std::string group_options(WorkGroup group) {
 std::string feature_options(const SceneFeatures& features) {
   return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
          (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
-         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.specular ? " -D HAS_SPECULAR" : "") +
-         (features.glass ? " -D HAS_GLASS" : "") + (features.phong ? " -D HAS_PHONG" : "") +
+         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
+         (features.specular ? " -D HAS_SPECULAR" : "") + (features.glass ? " -D HAS_GLASS" : "") +
+         (features.phong ? " -D HAS_PHONG" : "") +
          (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
                                 : "");
 }
@@ -79,11 +80,16 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 }
 
 Program specular_rays_program(const TraversalVariant& variant) {
-  return program(variant, "traverse/specular_rays.cl", feature_options({false, false, false, false, true, true, true}));
+  return program(variant, "traverse/specular_rays.cl",
+                 feature_options({false, false, false, false, true, true, true, true}));
 }
 
 Program segments_program(const TraversalVariant& variant) {
   return program(variant, "visibility/segments.cl", "");
+}
+
+Program pairs_program(const TraversalVariant& variant) {
+  return program(variant, "visibility/pairs.cl", "");
 }
 
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {

@@ -30,11 +30,12 @@ struct SceneFeatures {
   bool delta_lights = false;
   bool emitters = false;
   bool environment = false;
-  bool radiosity = false; ///< of the picture: points have irradiance from surfaces
-  bool specular = false;  ///< some splats are no diffuse ones: rays go on, normals are a field
-  bool glass = false;     ///< some are glass; specular too then
-  bool phong = false;     ///< some have a Phong lobe; specular too then
-  unsigned gather_k = 0;  ///< of the picture: photons an estimate of caustics; 0: there are none; specular too then
+  bool radiosity = false;  ///< of the picture: points have irradiance from surfaces
+  bool shadow_rays = true; ///< of the picture: direct light comes by them, not with the points' irradiance
+  bool specular = false;   ///< some splats are no diffuse ones: rays go on, normals are a field
+  bool glass = false;      ///< some are glass; specular too then
+  bool phong = false;      ///< some have a Phong lobe; specular too then
+  unsigned gather_k = 0;   ///< of the picture: photons an estimate of caustics; 0: there are none; specular too then
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
@@ -62,9 +63,11 @@ Program specular_rays_program(const TraversalVariant& variant);
 
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);
+/// Visibility of all pairs of points for the direct solver, pairs_visible.
+Program pairs_program(const TraversalVariant& variant);
 
 /// The picture by path tracing, path_pixels: a pixel a work-group of 8x4; never with fast math, for it is what others
-/// are measured by. `some_paths`: params.path_classes leaves some out.
+/// are measured by. `some_paths`: params.path_states leaves some out.
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);
 
 /// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.

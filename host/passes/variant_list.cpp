@@ -136,7 +136,7 @@ std::vector<ProgramUse> all_programs() {
     }
   std::vector<ProgramUse> uses{{{"traverse/brute_force.cl", ""}, true, true}};
   // Not for GPUs yet: their vectors of 8 lanes in arrays are more than a stack frame should be.
-  for (const char* file : {"fmm/expand.cl", "fmm/m2l.cl", "fmm/near.cl"})
+  for (const char* file : {"fmm/expand.cl", "fmm/m2l.cl", "fmm/near.cl", "fmm/direct.cl"})
     uses.push_back({fmm_program(file), true, false});
   // Nor gathering of photons, whose candidates stand in private memory.
   for (const unsigned k : {64u, 512u, 1024u})
@@ -155,17 +155,19 @@ std::vector<ProgramUse> all_programs() {
     add(eye_rays_program(v), cpu, gpu);
     add(shade_program(v, {}), cpu, gpu);
     add(shade_program(v, {true, true, true, true}), cpu, gpu);
-    add(shade_program(v, {true, true, true, true, true, true, true}), cpu, gpu);
+    add(shade_program(v, {false, true, false, true, false}), cpu, gpu);
+    add(shade_program(v, {true, true, true, true, true, true, true, true}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
     add(specular_rays_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
+    add(pairs_program(v), cpu, gpu);
     add(path_program(v, {true, true, true}, true), cpu, gpu);
-    add(path_program(v, {true, true, true, false, true, true, true}, true), cpu, gpu);
+    add(path_program(v, {true, true, true, false, true, true, true, true}, true), cpu, gpu);
     for (const unsigned k : {64u, 512u, 1024u})
       if (k == 64 || plain_but_for_kernel(v))
-        add(shade_program(v, {true, true, true, true, true, true, true, k}), cpu, false);
+        add(shade_program(v, {true, true, true, true, true, true, true, true, k}), cpu, false);
     for (const bool equal_power : {false, true})
-      add(trace_photons_program(v, {false, false, false, false, true, true, true}, equal_power), cpu, gpu);
+      add(trace_photons_program(v, {false, false, false, false, true, true, true, true}, equal_power), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);
   }
   return uses;

@@ -30,6 +30,7 @@ inline constexpr IntegerRange seed{0, 4294967295};
 inline constexpr IntegerRange max_depth{0, 256};
 inline constexpr IntegerRange order{2, 6};
 inline constexpr IntegerRange vmap_samples{1, 256};
+inline constexpr IntegerRange point_samples{0, 255};
 inline constexpr IntegerRange photons{0, 100'000'000};
 inline constexpr IntegerRange gather_k{1, 1024};
 inline constexpr IntegerRange leaf_capacity{1, 4096};

@@ -74,15 +74,19 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   const std::optional<TableReader> table = root.table("radiosity");
   if (!table) return;
-  table->allow_only({"method", "order", "vmap_samples", "epsilon", "tolerance", "direct_light"});
+  table->allow_only(
+      {"method", "order", "vmap_samples", "point_samples", "epsilon", "tolerance", "vmap", "direct_light"});
   radiosity.place = table->place();
-  if (const auto method = table->choice("method", {"fmm", "direct", "progressive", "mls", "voxel_cone"}))
+  if (const auto method = table->choice("method", {"fmm", "none", "direct", "progressive", "mls", "voxel_cone"}))
     radiosity.method = *method;
   if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
   if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))
     radiosity.vmap_samples = static_cast<int>(*samples);
+  if (const auto samples = table->integer("point_samples", limits::point_samples))
+    radiosity.point_samples = static_cast<int>(*samples);
   if (const auto epsilon = table->number("epsilon", limits::epsilon)) radiosity.epsilon = *epsilon;
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
+  if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
 }
 

@@ -21,6 +21,10 @@ const char* name_of(MaterialType type) {
   return "unknown";
 }
 
+bool exchanges_light(const MaterialSettings& material) {
+  return material.type == MaterialType::diffuse || material.type == MaterialType::phong;
+}
+
 const char* name_of(PointOrder order) {
   return order == PointOrder::morton ? "morton" : "hilbert";
 }

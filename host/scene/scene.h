@@ -59,6 +59,9 @@ struct MaterialSettings {
   SourcePlace place;
 };
 
+/// Whether its splats send and receive diffuse light. Specular ones do not; they block it (method.md §1).
+bool exchanges_light(const MaterialSettings& material);
+
 struct CloudSettings {
   std::string file;     ///< absolute, or relative to the working directory: already joined with the scene's folder
   std::string material; ///< name of a material; checked to exist
@@ -117,13 +120,15 @@ struct LightSettings {
 };
 
 struct RadiositySettings {
-  std::string method = "fmm";
+  std::string method = "fmm"; ///< "none": direct light only
   int order = 3;
-  int vmap_samples = 8;
+  int vmap_samples = 8;  ///< segments a pair of clusters
+  int point_samples = 1; ///< segments from a point to a cluster partly hidden from it; 0: none of its own
   double epsilon = 3e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
-  std::string direct_light = "shadow_rays";
-  std::optional<SourcePlace> place; ///< set when the file has the section
+  std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
+  std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
+  std::optional<SourcePlace> place;         ///< set when the file has the section
 };
 struct CausticSettings {
   long long photons = 400000;

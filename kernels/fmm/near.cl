@@ -1,14 +1,8 @@
 /* Mid and near rows of the links at the points: both clamps, times the visible share (method.md section 4). */
-#include "fmm/lanes.cl"
-
-/* A block of receiving points, and what they have got of each colour. */
-typedef struct Receivers {
-  fmm_lanes x, y, z, nx, ny, nz;
-  fmm_lanes red, green, blue;
-} Receivers;
+#include "fmm/exchange.cl"
 
 /* A cluster as one flux vector a colour, at its centroid. */
-static inline void receive_mid(Receivers* r, const __global FmmFlux* source, float share) {
+static inline void receive_mid(Receivers* r, const __global FmmFlux* source, fmm_lanes share) {
   const fmm_lanes dx = source->centre[0] - r->x, dy = source->centre[1] - r->y, dz = source->centre[2] - r->z;
   const fmm_lanes inverse = 1.0f / (dx * dx + dy * dy + dz * dz);
   const fmm_lanes facing = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
@@ -20,77 +14,47 @@ static inline void receive_mid(Receivers* r, const __global FmmFlux* source, flo
   r->blue += scale * select((fmm_lanes)(0.0f), q[6] * dx + q[7] * dy + q[8] * dz, j[6] * dx + j[7] * dy + j[8] * dz < 0.0f);
 }
 
-/* One quarter of a near source's disc at r from the receivers: a b / (s2 (s2 + softening)), fmm/operators/point_pair.h. */
-static inline fmm_lanes quarter_exchange(Receivers* r, fmm_lanes dx, fmm_lanes dy, fmm_lanes dz, fmm_lanes b,
-                                         float disc2) {
-  const fmm_lanes s2 = max(dx * dx + dy * dy + dz * dz, 1e-30f);
-  const fmm_lanes a = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
-  const fmm_lanes fade = max(1.0f - s2 / (4.0f * disc2), 0.0f);
-  return (a / s2) * (b / (s2 + disc2 * fade * fade));
-}
-
-/* A / pi-th part of the exchange of receivers closer than FMM_CLOSE to a source with normal n: four quarters. */
-static inline fmm_lanes close_exchange(Receivers* r, fmm_lanes dx, fmm_lanes dy, fmm_lanes dz, fmm_lanes b, float3 n,
-                                       float area) {
-  const float disc2 = 0.25f * INVERSE_PI * area;
-  const float offset = sqrt(2.0f * disc2);
-  const float side = n.z < 0.0f ? -1.0f : 1.0f, p = -1.0f / (side + n.z), q = n.x * n.y * p;
-  const float3 u = offset * (float3)(1.0f + side * n.x * n.x * p, side * q, -side * n.x);
-  const float3 v = offset * (float3)(q, side + n.y * n.y * p, -n.y);
-  return 0.25f * (quarter_exchange(r, dx + u.x, dy + u.y, dz + u.z, b, disc2) +
-                  quarter_exchange(r, dx - u.x, dy - u.y, dz - u.z, b, disc2) +
-                  quarter_exchange(r, dx + v.x, dy + v.y, dz + v.z, b, disc2) +
-                  quarter_exchange(r, dx - v.x, dy - v.y, dz - v.z, b, disc2));
-}
-
-/* The points of a cluster. points: x, y, z, nx, ny, nz, area, each `stride` apart; flux: B A [W] a colour. */
-static inline void receive_near(Receivers* r, const __global FmmCluster* source, float share,
+/* The points of a cluster, as receivers_at and receive_flux read them. */
+static inline void receive_near(Receivers* r, const __global FmmCluster* source, fmm_lanes share,
                                 const __global float* points, uint stride, const __global float* flux) {
-  const float scale = share * INVERSE_PI;
-  for (uint j = source->first_point; j < source->first_point + source->count; ++j) {
-    const __global float* p = points + j;
-    const fmm_lanes dx = p[0] - r->x, dy = p[stride] - r->y, dz = p[2u * stride] - r->z;
-    const float3 n = (float3)(p[3u * stride], p[4u * stride], p[5u * stride]);
-    const float area = p[6u * stride];
-    const fmm_lanes b = max(-(n.x * dx + n.y * dy + n.z * dz), 0.0f);
-    const fmm_lanes a = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
-    const fmm_lanes r2 = max(dx * dx + dy * dy + dz * dz, 1e-30f);
-    const fmm_lanes inverse = 1.0f / r2;
-    fmm_lanes factor = (a * inverse) * (b * inverse);
-    const fmm_mask close = r2 < FMM_CLOSE * area;
-    if (fmm_any(close))
-      factor = select(factor, close_exchange(r, dx, dy, dz, b, n, area), close);
-    factor *= scale;
-    r->red += factor * flux[j];
-    r->green += factor * flux[stride + j];
-    r->blue += factor * flux[2u * stride + j];
-  }
+  const fmm_lanes scale = share * INVERSE_PI;
+  for (uint j = source->first_point; j < source->first_point + source->count; ++j)
+    receive_flux(r, exchange_with_point(r, points + j, stride) * scale, flux, stride, j);
+}
+
+/* What the receivers see of a source: all the same, or each its own share. `block`: of the receivers, counted from the
+ * first point of the receiving cluster. */
+static inline fmm_lanes visible_share(float share, uint own_share, const __global uchar* point_shares, uint block) {
+  if (own_share == NO_POINT_SHARES)
+    return share;
+  return convert_float8(vload8(0, point_shares + own_share + block)) * (1.0f / 255.0f);
 }
 
 /* irradiance[colour * stride + i] += mid and near rows of the leaf and of all clusters above it, for a block of its points.
- * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (leaf, first point, points, -). Rows as in m2l. Written
+ * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (leaf, first point, points, -). Rows as in m2l; own_share: of each entry, NO_POINT_SHARES or
+ * where its receivers' shares begin in point_shares. Written
  * by nobody else; l2p must be done. */
 __kernel void receive_points(const __global uint4* jobs, uint first_job, uint count,
                              const __global FmmCluster* clusters, const __global float* points, uint stride,
                              const __global float* flux, const __global FmmFlux* fluxes,
                              const __global uint* mid_begin, const __global uint* mid_source,
-                             const __global float* mid_share, const __global uint* near_begin,
-                             const __global uint* near_source, const __global float* near_share,
-                             __global float* irradiance) {
+                             const __global float* mid_share, const __global uint* mid_own_share,
+                             const __global uint* near_begin, const __global uint* near_source,
+                             const __global float* near_share, const __global uint* near_own_share,
+                             const __global uchar* point_shares, __global float* irradiance) {
   const uint id = get_global_id(0);
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];
-  const __global float* p = points + job.y;
-  Receivers r;
-  r.x = load_fmm(p), r.y = load_fmm(p + stride), r.z = load_fmm(p + 2u * stride);
-  r.nx = load_fmm(p + 3u * stride), r.ny = load_fmm(p + 4u * stride), r.nz = load_fmm(p + 5u * stride);
-  r.red = 0.0f, r.green = 0.0f, r.blue = 0.0f;
+  Receivers r = receivers_at(points, stride, job.y);
   for (uint k = job.x;; k = clusters[k].parent) {
+    const uint block = job.y - clusters[k].first_point;
     for (uint entry = mid_begin[k]; entry < mid_begin[k + 1u]; ++entry)
-      receive_mid(&r, fluxes + mid_source[entry], mid_share[entry]);
+      receive_mid(&r, fluxes + mid_source[entry],
+                  visible_share(mid_share[entry], mid_own_share[entry], point_shares, block));
     for (uint entry = near_begin[k]; entry < near_begin[k + 1u]; ++entry)
-      receive_near(&r, clusters + near_source[entry], near_share[entry], points, stride, flux);
+      receive_near(&r, clusters + near_source[entry],
+                   visible_share(near_share[entry], near_own_share[entry], point_shares, block), points, stride, flux);
     if (k == 0u)
       break;
   }

@@ -43,20 +43,34 @@ static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 cent
 }
 
 #ifdef HAS_SPECULAR
-/* The next hit behind a rim: as if the ray had come through the rim's surface, so that a floor in the rim's own plane, before
- * or behind it by rounding, is met. */
-static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit rim) {
-  const float4 normal = pool_point_texel(POINT_TEXELS * rim.splat + 1u);
+/* The next hit within `reach` behind `hit`, as if the ray had come through the surface there: what lies in the same plane,
+ * before or behind it by rounding, is met. */
+static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float reach) {
+  const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
   ends.origin_normal = normal.xyz;
-  ends.origin_radius = pool_point_texel(POINT_TEXELS * rim.splat).w;
+  ends.origin_radius = pool_point_texel(POINT_TEXELS * hit.splat).w;
   ends.origin_material = (uint)normal.w + 1u;
-  ends.origin_back = 0u;
+  ends.origin_back = dot3(normal.xyz, ray.direction) < 0.0f ? 1u : 0u;
   ends.origin_through = 1u;
-  ray.origin = fma((float3)(rim.t), ray.direction, ray.origin);
+  ray.origin = fma((float3)(hit.t), ray.direction, ray.origin);
   ray.t_min = -SEGMENT_MARGIN;
-  Hit hit = trace_closest_from(POOL_ARGS, ray, ends);
-  hit.t += rim.t;
-  return hit;
+  ray.t_max = reach;
+  Hit behind = trace_closest_from(POOL_ARGS, ray, ends);
+  behind.t += hit.t;
+  return behind;
+}
+
+static inline bool is_of_medium(POOL_PARAMS, ShadowEnds ends, uint splat) {
+  return (uint)pool_point_texel(POINT_TEXELS * splat + 1u).w + 1u == ends.medium;
+}
+
+/* Where glass stands on something, the two planes are one: rounding must not say which of them a ray in the glass meets. It
+ * meets the glass. */
+static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
+  if (ends.medium == 0u || hit.splat == NO_SPLAT || is_of_medium(POOL_ARGS, ends, hit.splat))
+    return hit;
+  const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN);
+  return behind.splat != NO_SPLAT && is_of_medium(POOL_ARGS, ends, behind.splat) ? behind : hit;
 }
 #endif
 
@@ -69,7 +83,7 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, fl
       break;
 #ifdef HAS_SPECULAR
     /* From inside glass its backs are what there is to see. */
-    if ((uint)pool_point_texel(POINT_TEXELS * hit.splat + 1u).w + 1u == ends.medium)
+    if (is_of_medium(POOL_ARGS, ends, hit.splat))
       break;
 #endif
     *rays += 1.0f;
@@ -77,7 +91,7 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, fl
       break;
     *rays += 1.0f;
 #ifdef HAS_SPECULAR
-    hit = hit_behind(POOL_ARGS, ray, ends, hit);
+    hit = hit_behind(POOL_ARGS, ray, ends, hit, INFINITY);
 #else
     rest.t_min = hit.t;
     hit = trace_closest_of(POOL_ARGS, rest, ends);
@@ -89,6 +103,9 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, fl
 /* The surface that a viewer sees, `hit` being the ray's nearest hit of all: overlapping splats near the first that counts
  * are blended (kernels/lib/blend.cl). `ends`: of the surface that the ray leaves, or free. Adds the rays traced to *rays. */
 static inline bool blended_surface(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, Surface* surface, float* rays) {
+#ifdef HAS_SPECULAR
+  hit = glass_first(POOL_ARGS, ray, ends, hit);
+#endif
   const Hit first = visible_hit(POOL_ARGS, ray, ends, hit, rays);
   if (first.splat == NO_SPLAT)
     return false;

@@ -1,5 +1,6 @@
 /* One sample of a pixel: from the image to radiance.
- * L = emission + rho/pi (H_direct + H_indirect) on front sides; a back face reads 0; a miss reads the environment. */
+ * L = emission + rho/pi (H_direct + H_indirect) on front sides; a back face reads 0; a miss reads the environment.
+ *   NO_SHADOW_RAYS  H_direct is in the points' irradiance already */
 #include "lib/direct_light.cl"
 #include "render/camera.cl"
 
@@ -13,7 +14,8 @@
 /* Bounces that no roulette ends. */
 #define SURE_BOUNCES 3u
 
-#if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
+#if !defined(NO_SHADOW_RAYS) &&                                                                                         \
+    (defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT))
 #define HAS_LIGHT
 #endif
 

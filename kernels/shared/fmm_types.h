@@ -16,6 +16,10 @@
  * and device agree on which is which. */
 #define FMM_CLOSE 16.3f
 
+/* Of an entry of a row: all points of the receiver see the same share of the source. Else the place of the share of the
+ * receiver's first point among bytes of 1/255, one a point. */
+#define NO_POINT_SHARES 0xffffffffu
+
 /* Grid of a cluster's expansions: Chebyshev nodes in a box. */
 typedef struct FmmGrid {
   float centre[3];    /* bytes 0-11: root cube */

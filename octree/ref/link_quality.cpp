@@ -44,9 +44,9 @@ struct Tally {
 
 class Quality {
 public:
-  Quality(const ClusterTree& tree, View<Link> links, View<double> radiosity)
-      : tree_(tree), links_(links), radiosity_(radiosity), visible_(tree, links), tally_(links.size),
-        flux_(tree.nodes.size(), Vector::Zero()), place_(tree.nodes.size(), Vector::Zero()) {
+  Quality(const ClusterTree& tree, const VMap& map, View<double> radiosity)
+      : tree_(tree), links_(map.links), shares_(map.point_shares), radiosity_(radiosity), visible_(tree, links_),
+        tally_(links_.size), flux_(tree.nodes.size(), Vector::Zero()), place_(tree.nodes.size(), Vector::Zero()) {
     parallel_ranges(tree.nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n)
         sum_flux(n);
@@ -59,7 +59,7 @@ public:
     Receiver sum;
     for (std::uint32_t node = tree_.leaf_of[i];; node = tree_.nodes[node].parent) {
       for (const ClusterLink& l : visible_.of(node))
-        sum.by_links += follow(i, l, link_to);
+        sum.by_links += follow(i, node, l, link_to);
       if (node == 0) break;
     }
     const std::vector<std::uint8_t> blocked = trace(i, oracle);
@@ -84,22 +84,30 @@ private:
   }
 
   /// What comes to point i through the link.
-  double follow(std::uint32_t i, const ClusterLink& l, std::vector<std::uint32_t>& link_to) const {
+  double follow(std::uint32_t i, std::uint32_t node, const ClusterLink& l, std::vector<std::uint32_t>& link_to) const {
     const Cluster& source = tree_.nodes[l.other];
     const Splat& x = tree_.points[i];
+    const bool own = links_[l.link].point_shares != no_point_shares;
+    const LinkKind kind = own && l.kind == LinkKind::far ? LinkKind::mid : l.kind;
     double sum = 0.0;
     for (std::uint32_t j = source.first_point; j < source.first_point + source.count; ++j) {
       link_to[j] = l.link;
       const Kernel k = kernel_of(x, tree_.points[j]);
-      if (l.kind == LinkKind::far || (l.kind == LinkKind::near_ && k.facing && j != i))
+      if (kind == LinkKind::far || (kind == LinkKind::near_ && k.facing && j != i))
         sum += k.value * radiosity_[j] * static_cast<double>(tree_.points[j].area);
     }
-    if (l.kind == LinkKind::mid) {
+    if (kind == LinkKind::mid) {
       const Vector r = place_[l.other] - vector_of(x.position);
       const double d2 = r.squaredNorm();
       sum = std::max(0.0, vector_of(x.normal).dot(r)) * std::max(0.0, -flux_[l.other].dot(r)) / (pi * d2 * d2);
     }
-    return static_cast<double>(l.visible) * sum;
+    return (own ? own_share(i, node, links_[l.link]) : static_cast<double>(l.visible)) * sum;
+  }
+
+  /// Point i of the cluster `node` at one end of the link.
+  double own_share(std::uint32_t i, std::uint32_t node, const Link& link) const {
+    const std::size_t skipped = node == link.a ? 0 : tree_.nodes[link.a].count;
+    return shares_[link.point_shares + skipped + (i - tree_.nodes[node].first_point)] / 255.0;
   }
 
   /// Whether each point that faces point i is hidden from it.
@@ -133,6 +141,7 @@ private:
 
   const ClusterTree& tree_;
   View<Link> links_;
+  View<std::uint8_t> shares_;
   View<double> radiosity_;
   VisibleClusters visible_;
   std::vector<Tally> tally_;
@@ -141,9 +150,10 @@ private:
 
 } // namespace
 
-LinkQuality link_quality(const ClusterTree& tree, View<Link> links, VisibilityOracle& oracle, View<double> radiosity,
+LinkQuality link_quality(const ClusterTree& tree, const VMap& map, VisibilityOracle& oracle, View<double> radiosity,
                          View<std::uint32_t> receivers, double tolerated) {
-  Quality quality(tree, links, radiosity);
+  const View<Link> links = map.links;
+  Quality quality(tree, map, radiosity);
   LinkQuality result;
   double difference2 = 0.0, exact2 = 0.0, exact = 0.0, by_links = 0.0;
   for (const std::uint32_t i : receivers) {

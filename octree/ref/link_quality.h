@@ -14,10 +14,11 @@ struct LinkQuality {
 };
 
 /// The irradiance H [n of `receivers`] by the links, far as the sum over points without clamps, mid as one flux
-/// vector, near with clamps, each times its share (method.md §3, §4), against the same sum with each pair's own
+/// vector, near with clamps, each times its share or the receiver's own of `point_shares`, then far as mid (method.md
+/// §3, §4), against the same sum with each pair's own
 /// visibility. `radiosity`: one a point, tree order. Points nearer than the sum of their radii count as visible in
 /// both. O(receivers * n), each pair traced: for small scenes.
-LinkQuality link_quality(const ClusterTree& tree, View<Link> links, VisibilityOracle& oracle, View<double> radiosity,
+LinkQuality link_quality(const ClusterTree& tree, const VMap& map, VisibilityOracle& oracle, View<double> radiosity,
                          View<std::uint32_t> receivers, double tolerated);
 
 } // namespace pointgi

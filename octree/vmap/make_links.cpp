@@ -2,6 +2,7 @@
 #include "octree/parallel.h"
 #include "octree/vmap/facing.h"
 #include "octree/vmap/pair_samples.h"
+#include "octree/vmap/point_shares.h"
 #include <algorithm>
 #include <stdexcept>
 
@@ -14,6 +15,9 @@ constexpr std::size_t grain = 256;
 
 /// Leaves with more pairs of points than this are not searched for two that face each other.
 constexpr std::uint64_t exhaustive_pairs = 1u << 16;
+
+/// A pair that exchanges more light than epsilon is asked up to this many times K segments.
+constexpr float most_more_samples = 16.0f;
 
 /// What has been asked of a pair so far.
 enum class Stage : std::uint8_t {
@@ -141,18 +145,27 @@ private:
     if (from_a == Facing::none || from_b == Facing::none) return q;
     q.all_facing = from_a == Facing::all && from_b == Facing::all;
     const bool separated = well_separated(a, b, options_.separation);
-    q.small = separated && exchange_bound(a, b) < options_.epsilon;
+    const float exchange = exchange_bound(a, b);
+    q.small = separated && exchange < options_.epsilon;
     if (pair.stage != Stage::leaves && separated && (q.all_facing || q.small))
       q.kind = Question::whole;
     else
       q.kind = is_leaf(pair.a) && is_leaf(pair.b) ? Question::point_wise : Question::divided;
-    if (q.kind != Question::divided) q.segments = ask(pair, q.kind == Question::point_wise, segments);
+    if (q.kind != Question::divided) q.segments = ask(pair, q.kind == Question::point_wise, exchange, segments);
     return q;
   }
 
-  std::uint32_t ask(const Pair& pair, bool point_wise, std::vector<Segment>& segments) const {
+  /// Segments of a pair: the more light goes between the two, the more a hidden part that no segment meets would cost.
+  std::uint32_t samples_for(const Pair& pair, bool point_wise, float exchange) const {
+    if (point_wise) return 2 * options_.samples;
+    if (pair.stage == Stage::all_blocked) return 4 * options_.samples;
+    const float more = exchange > options_.epsilon ? std::min(exchange / options_.epsilon, most_more_samples) : 1.0f;
+    return static_cast<std::uint32_t>(static_cast<float>(options_.samples) * more);
+  }
+
+  std::uint32_t ask(const Pair& pair, bool point_wise, float exchange, std::vector<Segment>& segments) const {
     if (options_.thesis) return samples_.central(pair.a, pair.b, segments);
-    const std::uint32_t count = options_.samples * (point_wise ? 2 : pair.stage == Stage::all_blocked ? 4 : 1);
+    const std::uint32_t count = samples_for(pair, point_wise, exchange);
     const std::uint32_t taken =
         samples_.stratified(pair.a, pair.b, count, static_cast<std::uint32_t>(pair.stage), segments);
     if (taken > 0 || !point_wise || !searchable(pair)) return taken;
@@ -242,7 +255,12 @@ VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOpt
   if (!(options.epsilon >= 0.0f)) throw std::invalid_argument("vmap: epsilon must not be negative");
   if (!(options.separation > 0.0f && options.separation <= 1.0f))
     throw std::invalid_argument("vmap: separation must be above 0 and at most 1");
-  return LinkMaker(tree, oracle, options).run();
+  if (options.point_samples > 255) throw std::invalid_argument("vmap: samples of a point must be from 0 to 255");
+  VMap map = LinkMaker(tree, oracle, options).run();
+  if (options.point_samples > 0 && !options.thesis)
+    map.point_shares = make_point_shares(tree, map.links, oracle, {options.point_samples, options.seed, options.batch},
+                                         map.statistics.rays);
+  return map;
 }
 
 } // namespace pointgi

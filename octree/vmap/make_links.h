@@ -22,6 +22,8 @@ struct LinkOptions {
   float separation = 0.55f; ///< far apart: radius_a + radius_b < separation * distance; (0, 1]
   std::uint32_t seed = 1;   ///< of the choice of points
   bool thesis = false; ///< one segment a pair, between the points nearest to the centroids, whatever `samples` says
+  unsigned point_samples = 1;   ///< segments from each point to a cluster partly hidden from it
+                                ///< (octree/vmap/point_shares.h), at most 255; 0: one share for all points of a pair
   std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
 };
 
@@ -33,7 +35,8 @@ struct LinkStatistics {
 };
 
 struct VMap {
-  std::vector<Link> links; ///< wave after wave; no pair twice
+  std::vector<Link> links;                ///< wave after wave; no pair twice
+  std::vector<std::uint8_t> point_shares; ///< in 1/255; where a link's begin: Link::point_shares
   LinkStatistics statistics;
 };
 

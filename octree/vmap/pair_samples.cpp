@@ -8,6 +8,9 @@ namespace pointgi {
 
 namespace {
 
+/// Candidates for each segment of towards(), where a cluster has more points than that.
+constexpr std::uint32_t candidates = 8, most_candidates = 64;
+
 /// Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014): the finaliser of splitmix64.
 std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
@@ -38,6 +41,18 @@ bool face_each_other(const Splat& a, const Splat& b) {
     before_b -= b.normal[k] * d;
   }
   return before_a > 0.0f && before_b > 0.0f;
+}
+
+float exchange_weight(const Splat& at, const Splat& from) {
+  float before_at = 0.0f, before_from = 0.0f, d2 = 0.0f;
+  for (int k = 0; k < 3; ++k) {
+    const float d = from.position[k] - at.position[k];
+    before_at += at.normal[k] * d;
+    before_from -= from.normal[k] * d;
+    d2 += d * d;
+  }
+  if (!(before_at > 0.0f && before_from > 0.0f)) return 0.0f;
+  return (before_at / d2) * (before_from / (d2 + 0.318309886f * from.area)) * from.area;
 }
 
 PairSamples::PairSamples(const ClusterTree& tree, std::uint32_t seed, bool thesis)
@@ -85,6 +100,37 @@ std::uint32_t PairSamples::stratified(std::uint32_t a, std::uint32_t b, std::uin
     ++taken;
   }
   return taken;
+}
+
+std::uint32_t PairSamples::towards(std::uint32_t point, std::uint32_t b, std::uint32_t count, std::uint32_t salt,
+                                   std::vector<Segment>& out) const {
+  const Cluster& from = tree_.nodes[b];
+  const Splat& at = tree_.points[point];
+  const std::uint64_t random =
+      mixed(mixed((static_cast<std::uint64_t>(point) << 32) | b) ^ ((static_cast<std::uint64_t>(salt) << 32) | seed_));
+  const double turn = static_cast<double>(random >> 32) * 0x1p-32;
+  const float draw = static_cast<float>(random & 0xffffffu) * 0x1p-24f;
+  const std::uint32_t looked_at = std::min({from.count, candidates * count, most_candidates});
+  std::uint32_t chosen[most_candidates];
+  float sums[most_candidates], sum = 0.0f;
+  for (std::uint32_t k = 0; k < looked_at; ++k) {
+    // All of them, or some by area, and then their areas count no more.
+    chosen[k] = looked_at == from.count ? from.first_point + k
+                                        : point_at(from, turned(static_cast<double>(k) / looked_at, turn));
+    const Splat& candidate = tree_.points[chosen[k]];
+    const float weight = exchange_weight(at, candidate);
+    sum += looked_at == from.count || weight == 0.0f ? weight : weight / candidate.area;
+    sums[k] = sum;
+  }
+  if (!(sum > 0.0f)) return 0;
+  std::uint32_t at_sum = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const float want = sum * (static_cast<float>(k) + draw) / static_cast<float>(count);
+    while (at_sum + 1 < looked_at && sums[at_sum] <= want)
+      ++at_sum;
+    out.push_back({point, chosen[at_sum]});
+  }
+  return count;
 }
 
 std::uint32_t PairSamples::exhaustive(std::uint32_t a, std::uint32_t b, std::uint32_t count,

@@ -177,7 +177,7 @@ TEST_CASE("a floor's irradiance by photons adds up to their power") {
 TEST_CASE("caustics of an area light are those that path tracing finds by chance") {
   const std::string scene =
       "version = 1\n[render]\nsize = [32, 24]\nspp = SPP\n[camera]\nposition = [0.0, 1.4, 2.6]\n"
-      "look_at = [0.0, 0.1, 0.0]\nfov_deg = 40.0\n[caustics]\nphotons = 200000\n" +
+      "look_at = [0.0, 0.1, 0.0]\nfov_deg = 40.0\n[radiosity]\nmethod = \"none\"\n[caustics]\nphotons = 200000\n" +
       materials +
       "[[shape]]\ntype = \"sphere\"\ncentre = [-0.4, 0.4, 0.0]\nradius = 0.3\nmaterial = \"glass\"\n"
       "spacing = 0.03\n"

@@ -25,7 +25,8 @@ ScanPicture render_scan(const std::string& path, bool jitter = true) {
   options.size = "640x480";
   options.quiet = true;
   options.stats_file = folder.file("stats.json");
-  if (!jitter) options.overrides = {"render.jitter=false"};
+  options.overrides = {"radiosity.method=none"}; // what is asked here is where the surface is and which side is lit
+  if (!jitter) options.overrides.push_back("render.jitter=false");
   if (run_render(options) != ExitCode::done) throw std::runtime_error("the picture was not finished");
   std::ifstream stats(options.stats_file);
   return {read_exr(options.output), nlohmann::json::parse(stats)};

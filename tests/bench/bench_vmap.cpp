@@ -1,5 +1,5 @@
 /// How the V-map grows: a closed room with a bumpy body, of 25,000 to 200,000 points; links by kind, rays and seconds.
-/// bench_vmap [SAMPLES [EPSILON [POINTS...]]]
+/// bench_vmap [SAMPLES [EPSILON [POINT_SAMPLES [POINTS...]]]]
 #include "host/passes/build_pools.h"
 #include "host/passes/variant_list.h"
 #include "host/passes/visibility.h"
@@ -43,7 +43,7 @@ Row measure(Session& session, std::size_t points, const LinkOptions& options) {
   std::vector<std::uint32_t> receivers;
   for (std::size_t k = 0; k < 300; ++k) // spread along the curve
     receivers.push_back(static_cast<std::uint32_t>((2 * k + 1) * tree.points.size() / 600));
-  row.quality = link_quality(tree, map.links, oracle, test::room_radiosity(tree.points), receivers, 0.1);
+  row.quality = link_quality(tree, map, oracle, test::room_radiosity(tree.points), receivers, 0.1);
   return row;
 }
 
@@ -71,15 +71,16 @@ int main(int argc, char** argv) {
   if (argc > 2) options.epsilon = std::strtof(argv[2], nullptr);
   options.thesis = argc > 1 && std::string(argv[1]) == "thesis";
   if (options.thesis) options.samples = 1;
+  if (argc > 3) options.point_samples = static_cast<unsigned>(std::strtoul(argv[3], nullptr, 10));
   std::vector<std::size_t> sizes;
-  for (int k = 3; k < argc; ++k)
+  for (int k = 4; k < argc; ++k)
     sizes.push_back(std::strtoul(argv[k], nullptr, 10));
   if (sizes.empty()) sizes = {25'000, 50'000, 100'000, 200'000};
   Session session(choose_device(""));
-  std::printf(
-      "K %u, epsilon %g\n  points clusters |     pairs      far      mid     near |      rays | clusters, links "
-      "| error of H (bias) at 300 points\n",
-      options.samples, static_cast<double>(options.epsilon));
+  std::printf("K %u, epsilon %g, %u segments a point of a link partly visible\n  points clusters |     pairs      far  "
+              "    mid     near |      rays | clusters, links "
+              "| error of H (bias) at 300 points\n",
+              options.samples, static_cast<double>(options.epsilon), options.point_samples);
   std::vector<Row> rows;
   for (const std::size_t size : sizes) {
     rows.push_back(measure(session, size, options));

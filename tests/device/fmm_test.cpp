@@ -12,13 +12,18 @@ using namespace pointgi::test;
 
 namespace {
 
-/// Links of all kinds and shares: every third far link becomes a mid one.
-std::vector<Link> mixed_links(const ClusterTree& tree) {
+/// Links of all kinds and shares: every third far link becomes a mid one, every third link's points have shares of
+/// their own, which are put into `shares`.
+std::vector<Link> mixed_links(const ClusterTree& tree, std::vector<std::uint8_t>& shares) {
   auto links = links_without_visibility(tree);
   std::mt19937 random(7);
   for (Link& link : links) {
     if (link.kind == LinkKind::far && random() % 3 == 0) link.kind = LinkKind::mid;
     link.visible = random() % 2 == 0 ? 1.0f : 0.375f;
+    if (random() % 3 != 0) continue;
+    link.point_shares = static_cast<std::uint32_t>(shares.size());
+    for (std::uint32_t k = 0; k < tree.nodes[link.a].count + tree.nodes[link.b].count; ++k)
+      shares.push_back(static_cast<std::uint8_t>(random() % 256));
   }
   return links;
 }
@@ -30,12 +35,13 @@ TEST_CASE("fmm on the device equals its twin") {
     for (unsigned order = 2; order <= 6; ++order) {
       CAPTURE(splats.size(), order);
       const ClusterTree tree = build_clusters(splats, {});
-      const auto links = mixed_links(tree);
+      std::vector<std::uint8_t> shares;
+      const auto links = mixed_links(tree, shares);
       FmmOptions options;
       options.grid.order = order;
       options.lists.direct_below = order % 2 == 0 ? 0.0 : 1.5;
-      FmmOperator twin(tree, links, options);
-      DeviceFmm device(session(), tree, links, options);
+      FmmOperator twin(tree, links, options, shares);
+      DeviceFmm device(session(), tree, links, options, shares);
       REQUIRE(device.points() == twin.points());
       const auto b = varied_radiosity(tree.points);
       std::vector<double> expected, h;

@@ -50,7 +50,7 @@ struct TracedRoom {
 
   LinkQuality measure(const LinkOptions& options) {
     const VMap map = make_links(tree, oracle, options);
-    const LinkQuality q = link_quality(tree, map.links, oracle, radiosity, receivers, 0.1);
+    const LinkQuality q = link_quality(tree, map, oracle, radiosity, receivers, 0.1);
     INFO("K " << options.samples << (options.thesis ? " (thesis)" : "") << ", epsilon " << options.epsilon);
     INFO("links " << map.links.size() << ", rays " << map.statistics.rays);
     INFO("error " << q.error << ", bias " << q.bias << ", hiding " << q.hiding << ", missing " << q.missing);
@@ -149,7 +149,10 @@ TEST_CASE("the links' error falls with epsilon") {
   }
   CHECK(by_epsilon[0].error > by_epsilon[1].error);
   CHECK(by_epsilon[1].error > 2.0 * by_epsilon[2].error);
-  // Below 1e-2 what is left at so few points is the one share that two close leaves have for all their points.
-  options.epsilon = 0.001f;
-  CHECK(scene.measure(options).error < 1.1 * by_epsilon[2].error);
+  options.epsilon = 0.003f;
+  const double own = scene.measure(options).error;
+  CHECK(own < 0.8 * by_epsilon[2].error);
+  // One share for all points of a pair is coarser than what each sees itself, on which shadows' edges hang.
+  options.point_samples = 0;
+  CHECK(own < 0.6 * scene.measure(options).error);
 }

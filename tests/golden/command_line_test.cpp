@@ -16,11 +16,29 @@ nlohmann::json json_of(const std::string& path) {
   return nlohmann::json::parse(file);
 }
 
+/// The ball by direct light alone: what its picture needs is then a list that one can write down.
+std::string direct_scene() {
+  return std::string(small_scene()) + "[radiosity]\nmethod = \"none\"\n";
+}
+
+std::vector<std::string> names_of(const nlohmann::json& stages, bool ran) {
+  std::vector<std::string> names;
+  for (const auto& stage : stages)
+    if (stage["ran"] == ran) names.push_back(stage["name"]);
+  return names;
+}
+
+std::string reason_of(const nlohmann::json& stages, const std::string& name) {
+  for (const auto& stage : stages)
+    if (stage["name"] == name) return stage["reason"];
+  return "(no such stage)";
+}
+
 } // namespace
 
 TEST_CASE("render writes picture, stats and trace, and names the picture on stdout") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("ball.exr");
+  const std::string scene = folder.write("ball.toml", direct_scene()), out = folder.file("ball.exr");
   const Run run = run_program("render " + scene + " -o " + out + " --stats " + folder.file("s.json") + " --trace " +
                               folder.file("t.json"));
   REQUIRE(run.code == 0);
@@ -36,11 +54,9 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
   const auto stats = json_of(folder.file("s.json"));
   CHECK(stats["scene"]["points"] > 1000);
   CHECK(stats["render"]["eye_rays"] == 40 * 30 * 4);
-  std::vector<std::string> ran, skipped;
-  for (const auto& stage : stats["stages"])
-    (stage["ran"] ? ran : skipped).push_back(stage["name"]);
+  const auto ran = names_of(stats["stages"], true);
   CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "render", "image"});
-  CHECK(skipped == std::vector<std::string>{"vmap", "fmm", "normals", "photon"});
+  CHECK(names_of(stats["stages"], false) == std::vector<std::string>{"vmap", "fmm", "normals", "photon"});
   std::size_t stages = 0, launches = 0;
   double stages_end = 0.0;
   const auto trace = json_of(folder.file("t.json"));
@@ -60,6 +76,70 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
     if (event["ph"] == "X") CHECK((event["ts"] >= 0.0 && event["ts"] <= stages_end));
   CHECK_THAT(stats["variant"]["source"].get<std::string>(), Contains("default of"));
   CHECK_THAT(run.err, Contains("variant: " + stats["variant"]["name"].get<std::string>()));
+}
+
+TEST_CASE("light between surfaces is part of a picture unless the scene or the command has no need of it") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  const auto stats_of = [&](const std::string& input, const std::string& options) {
+    const Run run = run_program("render " + input + " --quiet -o " + folder.file("x.exr") + " --stats " +
+                                folder.file("s.json") + options);
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    return json_of(folder.file("s.json"));
+  };
+  const auto whole = stats_of(scene, "");
+  CHECK(names_of(whole["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "render", "image"});
+  CHECK(names_of(whole["stages"], false) == std::vector<std::string>{"normals", "photon"});
+  for (const char* figure : {"pairs_tested", "links", "rays"})
+    CHECK(whole["vmap"][figure].is_number());
+  for (const char* figure : {"order", "m2l", "p2p", "iterations", "residual"})
+    CHECK(whole["radiosity"][figure].is_number());
+  CHECK(whole["radiosity"]["method"] == "fmm");
+  CHECK(read_exr(folder.file("x.exr")).channels.count("Diffuse.G") == 1);
+  struct Case {
+    std::string options, reason;
+  };
+  const std::vector<Case> cases = {
+      {" --set radiosity.method=none", "radiosity.method = \"none\": direct light only"},
+      {" --set light.0.power_w=[0,0,0]", "the scene has no light and no emission"},
+      {" --set material.0.albedo=[0,0,0]", "nothing in the scene is diffuse with an albedo above 0"},
+      {" --integrator path", "the path tracer makes the picture"},
+  };
+  for (const Case& c : cases) {
+    const auto stats = stats_of(scene, c.options);
+    CAPTURE(c.options);
+    for (const char* stage : {"vmap", "fmm"})
+      CHECK(reason_of(stats["stages"], stage) == c.reason);
+    CHECK(stats.count("vmap") == 0);
+    CHECK(stats.count("radiosity") == 0);
+    CHECK((read_exr(folder.file("x.exr")).channels.count("Diffuse.G") == 1) == (c.options == " --integrator path"));
+  }
+  const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                                      "property float y\nproperty float z\nend_header\n"
+                                                      "0 0 0\n1 0 0\n0 1 0\n");
+  CHECK(reason_of(stats_of(cloud, " --size 16x12")["stages"], "fmm").empty()); // a bare cloud, too
+}
+
+TEST_CASE("a mirror adds the stages normals and photon, and the channels of their light") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("mirror.toml", mirror_scene());
+  const auto stats_of = [&](const std::string& options) {
+    const Run run = run_program("render " + scene + " --quiet -o " + folder.file("x.exr") + " --stats " +
+                                folder.file("s.json") + options);
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    return json_of(folder.file("s.json"));
+  };
+  const auto whole = stats_of(" --set caustics.photons=2000");
+  CHECK(names_of(whole["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "normals", "photon", "render", "image"});
+  CHECK(whole["photons"]["stored"] > 0);
+  for (const char* channel : {"Diffuse.G", "Specular.G", "Caustic.G"})
+    CHECK(read_exr(folder.file("x.exr")).channels.count(channel) == 1);
+  CHECK(reason_of(stats_of(" --set caustics.photons=0")["stages"], "photon") == "caustics.photons = 0");
+  CHECK(reason_of(stats_of(" --integrator path")["stages"], "photon") == "the path tracer makes the picture");
 }
 
 TEST_CASE("wrong usage is exit code 2 and says what is right") {
@@ -132,7 +212,7 @@ TEST_CASE("unknown devices and unwritable places have exit codes of their own") 
 
 TEST_CASE("a second start builds no kernel") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("ball.toml", small_scene());
+  const std::string scene = folder.write("ball.toml", direct_scene());
   const std::string cache = "POINTGI_CACHE_DIR=" + folder.file("cache");
   const std::string arguments = "render " + scene + " -o " + folder.file("x.exr") + " --stats " + folder.file("s.json");
   REQUIRE(run_program(arguments, cache).code == 0);
@@ -195,14 +275,15 @@ TEST_CASE("kernels can be edited, and their errors name our files") {
 
 TEST_CASE("dumped kernels hold what the scene needs and no more") {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("ball.toml", small_scene());
+  const std::string scene = folder.write("ball.toml", direct_scene());
   REQUIRE(
       run_program("render " + scene + " -o " + folder.file("x.exr") + " --dump-kernels " + folder.file("dump")).code ==
       0);
   std::ifstream file(folder.file("dump/render_shade.cl"));
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string options = text.substr(0, text.find('\n'));
-  CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT"));
+  CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT") &&
+                          !Contains("HAS_RADIOSITY"));
   CHECK_THAT(text, Contains("#line 1 \"kernels/lib/ray_splat.cl\""));
 }
 

@@ -89,3 +89,37 @@ TEST_CASE("fewer nodes across flat clusters cost little accuracy") {
     CHECK(all[k] <= fewer[k]);
   check_orders(fewer);
 }
+
+TEST_CASE("each point's own share of a source, against the sum of its pairs with those shares") {
+  const ClusterTree tree = build_clusters(inside_cube(12), {});
+  std::vector<Link> links = links_without_visibility(tree);
+  const std::size_t n = tree.points.size();
+  std::mt19937 random(11);
+  std::vector<std::uint8_t> shares;
+  std::vector<double> of_pair(n * n, 1.0);
+  for (Link& link : links) {
+    if (link.a == link.b || random() % 2 == 0) continue;
+    link.visible = 0.5f;
+    link.point_shares = static_cast<std::uint32_t>(shares.size());
+    for (const auto& [receiver, source] : {std::pair{link.a, link.b}, std::pair{link.b, link.a}}) {
+      const Cluster &to = tree.nodes[receiver], &from = tree.nodes[source];
+      for (std::uint32_t i = to.first_point; i < to.first_point + to.count; ++i) {
+        shares.push_back(static_cast<std::uint8_t>(random() % 256));
+        for (std::uint32_t j = from.first_point; j < from.first_point + from.count; ++j)
+          of_pair[i * n + j] = shares.back() / 255.0;
+      }
+    }
+  }
+  FmmOptions options;
+  options.lists.direct_below = 1e9; // all links as point pairs
+  FmmOperator exchange(tree, links, options, shares);
+  std::vector<std::uint32_t> all(n);
+  for (std::uint32_t i = 0; i < n; ++i)
+    all[i] = i;
+  const std::vector<double> b = varied_radiosity(tree.points);
+  const auto truth =
+      direct_sum(tree.points, b, all, [&](std::uint32_t i, std::uint32_t j) { return of_pair[i * n + j]; });
+  std::vector<double> h;
+  exchange.apply(b, Judge::now, h);
+  CHECK(relative_l2(h, truth) < 1e-12); // the same sums in another order
+}

@@ -1,7 +1,7 @@
 #include "host/passes/vmap_cache.h"
 #include "octree/ref/segment_blocked.h"
+#include "tests/support/cache_folder.h"
 #include "tests/support/rooms.h"
-#include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -10,25 +10,6 @@ using namespace pointgi;
 using namespace pointgi::test;
 
 namespace {
-
-/// POINTGI_CACHE_DIR is this folder for a while.
-class CacheFolder {
-public:
-  CacheFolder() {
-    if (const char* old = std::getenv("POINTGI_CACHE_DIR")) old_ = old;
-    setenv("POINTGI_CACHE_DIR", folder_.file("cache").c_str(), 1);
-  }
-  ~CacheFolder() {
-    if (old_)
-      setenv("POINTGI_CACHE_DIR", old_->c_str(), 1);
-    else
-      unsetenv("POINTGI_CACHE_DIR");
-  }
-
-private:
-  TemporaryFolder folder_;
-  std::optional<std::string> old_;
-};
 
 struct Kept {
   std::vector<Splat> splats = room_splats(400);
@@ -52,12 +33,12 @@ const Kept& kept() {
 }
 
 bool same(const VMap& a, const VMap& b) {
-  if (a.links.size() != b.links.size() || a.statistics.rays != b.statistics.rays ||
+  if (a.links.size() != b.links.size() || a.statistics.rays != b.statistics.rays || a.point_shares != b.point_shares ||
       a.statistics.pairs_tested != b.statistics.pairs_tested || a.statistics.near_ != b.statistics.near_)
     return false;
   for (std::size_t i = 0; i < a.links.size(); ++i)
     if (a.links[i].a != b.links[i].a || a.links[i].b != b.links[i].b || a.links[i].visible != b.links[i].visible ||
-        a.links[i].kind != b.links[i].kind)
+        a.links[i].kind != b.links[i].kind || a.links[i].point_shares != b.links[i].point_shares)
       return false;
   return true;
 }
@@ -121,7 +102,7 @@ TEST_CASE("a kept V-map that is cut short or damaged anywhere is not used, and m
   const Kept& k = kept();
   store_vmap(k.key, k.map);
   const std::string path = vmap_file(k.key), whole = contents(path);
-  REQUIRE(whole.size() == 96 + k.key.size() + 16 * k.map.links.size());
+  REQUIRE(whole.size() == 104 + k.key.size() + 20 * k.map.links.size() + k.map.point_shares.size());
   std::size_t trusted = 0, silent = 0;
   const auto look = [&](const std::string& bytes) {
     put(path, bytes);
@@ -182,6 +163,10 @@ TEST_CASE("links that the tree cannot have are not used, however well the file i
   }
   SECTION("of no kind") {
     map.links = {{1, 2, 1.0f, static_cast<LinkKind>(9)}};
+  }
+  SECTION("whose points' shares are not in the file") {
+    map.links = {{1, 2, 0.5f, LinkKind::near_, 1}};
+    map.point_shares.resize(k.tree.nodes[1].count + k.tree.nodes[2].count);
   }
   store_vmap(k.key, map);
   CHECK_FALSE(load_vmap(k.key, k.tree).map);

@@ -109,6 +109,7 @@ order = 4
 vmap_samples = 16
 epsilon = 2e-2
 tolerance = 1e-4
+vmap = "thesis"
 direct_light = "radiosity"
 [caustics]
 photons = 100000000
@@ -163,6 +164,7 @@ TEST_CASE("every key of the settings arrives", "[scene]") {
   CHECK(scene.radiosity.vmap_samples == 16);
   CHECK(scene.radiosity.epsilon == 2e-2);
   CHECK(scene.radiosity.tolerance == 1e-4);
+  CHECK(scene.radiosity.vmap == "thesis");
   CHECK(scene.radiosity.direct_light == "radiosity");
   CHECK(scene.radiosity.place.has_value());
   CHECK(scene.caustics.photons == 100'000'000);
@@ -291,6 +293,7 @@ TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
   CHECK(scene.camera.fov_deg == 40);
   CHECK(scene.environment == Vector3d(0, 0, 0));
   CHECK(scene.radiosity.method == "fmm");
+  CHECK(scene.radiosity.vmap == "fractions");
   CHECK(scene.radiosity.direct_light == "shadow_rays");
   CHECK_FALSE(scene.radiosity.place.has_value());
   CHECK(scene.caustics.photons == 400000);

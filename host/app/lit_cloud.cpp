@@ -1,0 +1,45 @@
+#include "host/app/lit_cloud.h"
+#include "host/image/srgb.h"
+#include <algorithm>
+#include <cmath>
+
+namespace pointgi {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+void add_geometry(const Splat& s, const Frame& frame, PointCloud& cloud) {
+  cloud.position.push_back(frame.to_world({s.position[0], s.position[1], s.position[2]}));
+  cloud.normal.emplace_back(s.normal[0], s.normal[1], s.normal[2]);
+  cloud.radius.push_back(static_cast<float>(frame.side * s.radius));
+}
+
+} // namespace
+
+LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, double exposure) {
+  LitCloud lit;
+  lit.columns = {{"scalar_radiosity_r", {}}, {"scalar_radiosity_g", {}}, {"scalar_radiosity_b", {}}};
+  const std::vector<float> emitted = emitted_radiosity(scene.lighting, scene.points);
+  const double brightness = std::exp2(exposure) / pi;
+  for (std::size_t p = 0; p < scene.points.size; ++p) {
+    const Splat& s = scene.points[p];
+    add_geometry(s, scene.frame, lit.cloud);
+    const bool diffuse = exchanges_light(scene.scene.materials[static_cast<std::size_t>(s.material)]);
+    Eigen::Vector3f colour;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = 3 * p + c;
+      const double irradiance =
+          double{light.direct[at]} + (light.from_surfaces.empty() ? 0.0 : double{light.from_surfaces[at]});
+      const double radiosity =
+          scene.lighting.radiance.scale * (emitted[at] + (diffuse ? s.colour[c] * irradiance : 0.0));
+      lit.columns[c].values.push_back(static_cast<float>(radiosity));
+      const auto shown = static_cast<float>(std::clamp(brightness * radiosity, 0.0, 1.0));
+      colour[static_cast<Eigen::Index>(c)] = linear_to_srgb(shown);
+    }
+    lit.cloud.colour.push_back(colour);
+  }
+  return lit;
+}
+
+} // namespace pointgi

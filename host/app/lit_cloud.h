@@ -1,0 +1,19 @@
+#pragma once
+/// The solution as a point cloud: what `pointgi bake` writes (interface.md).
+#include "host/app/indirect_stages.h"
+#include "host/cloud/ply.h"
+
+namespace pointgi {
+
+struct LitCloud {
+  PointCloud cloud;               ///< world units; colours are the sRGB of B / pi, brightened by the exposure
+  std::vector<PlyColumn> columns; ///< scalar_radiosity_r, _g, _b: B [W/m²]
+};
+
+/// B = E + rho (H_direct + H(B)) of every point of the pool, in its order: all light that leaves the point's front
+/// after emission or diffuse reflection, 0 of specular splats.
+/// `light` has both irradiances, or where no surface sends any light to another the direct one alone. Positions are
+/// those of the root cube: within 1e-7 of the scene's size. `exposure`: stops.
+LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, double exposure);
+
+} // namespace pointgi

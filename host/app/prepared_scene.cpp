@@ -1,0 +1,54 @@
+#include "host/app/prepared_scene.h"
+#include "host/passes/build_pools.h"
+#include <spdlog/spdlog.h>
+
+namespace pointgi {
+
+namespace {
+
+/// Device memory as the variant wants it, plain buffers where the device's images are too small.
+DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
+  if (!images_fit(session.info(), pools, variant.storage)) {
+    spdlog::warn("the device's images are missing or too small for the octree: plain buffers are used instead");
+    variant.storage = PoolStorage::buffer;
+  }
+  return upload_pools(session, pools, variant.storage);
+}
+
+/// The scene's wishes first, then what a profile of this device found, then the defaults of its class.
+VariantChoice choose_for(const Scene& scene, const DeviceInfo& device) {
+  const StoredWinner stored = stored_winner(device);
+  if (!stored.warning.empty()) spdlog::warn("{}", stored.warning);
+  const VariantChoice choice = choose_variant(scene.traversal, scene.octree, device, stored.file);
+  spdlog::info("variant: {} ({})", name_of(choice.variant), choice.source);
+  return choice;
+}
+
+} // namespace
+
+PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog& stages) {
+  stages.start("cloud");
+  PlacedSplats placed = load_and_place(scene, bare);
+  stages.finish(placed.splats.size(), "points");
+  PreparedScene ready;
+  stages.start("octree");
+  ready.frame = placed.frame;
+  ready.choice = choose_for(scene, session.info());
+  ready.pools = build_pools(placed.splats, ready.choice.variant);
+  placed.splats = {};
+  for (const std::uint32_t source : source_of(ready.pools))
+    ready.ids.push_back(placed.id[source]);
+  ready.on_device = upload(session, ready.pools, ready.choice.variant);
+  stages.finish(summary_of(ready.pools).nodes, "nodes");
+  ready.lighting = device_lighting(scene, ready.frame, points_of(ready.pools));
+  return ready;
+}
+
+std::vector<std::string> overrides_of(const LightOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back("render.seed=" + std::to_string(*options.seed));
+  if (options.exposure) overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
+  return overrides;
+}
+
+} // namespace pointgi

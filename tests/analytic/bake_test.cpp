@@ -1,0 +1,82 @@
+/// The radiosity that bake writes against what is known (truths.md §1).
+#include "host/app/commands.h"
+#include "host/image/srgb.h"
+#include "tests/support/temporary_folder.h"
+#include <Eigen/Core>
+#include <catch2/catch.hpp>
+#include <cstring>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// One point of the file, as bytes lie there.
+struct LitPoint {
+  Eigen::Vector3d position;
+  unsigned char colour[3];
+  float radiosity[3];
+};
+
+std::vector<LitPoint> bake(const std::string& scene, const std::vector<std::string>& set = {}) {
+  const TemporaryFolder folder;
+  BakeOptions options;
+  options.input = folder.write("scene.toml", scene);
+  options.output = folder.file("lit.ply");
+  options.overrides = set;
+  options.quiet = true;
+  if (run_bake(options) != ExitCode::done) throw std::runtime_error("the cloud was not finished");
+  const std::string text = contents(options.output);
+  constexpr std::size_t size = 55; // double position, float normal, bytes of colour, float radius and radiosity
+  std::vector<LitPoint> points;
+  for (std::size_t at = text.find("end_header\n") + 11; at + size <= text.size(); at += size) {
+    LitPoint& p = points.emplace_back();
+    std::memcpy(p.position.data(), &text[at], 24);
+    std::memcpy(p.colour, &text[at + 36], 3);
+    std::memcpy(p.radiosity, &text[at + 43], 12);
+  }
+  return points;
+}
+
+/// The inside of a sphere of radius 1 and albedo 0.5 that shines, moved far away.
+std::string furnace(double x) {
+  return "version = 1\n[[material]]\nname = \"wall\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.0]\n"
+         "emission = [0.1, 0.2, 0.3]\n[[shape]]\ntype = \"sphere\"\ncentre = [" +
+         std::to_string(x) +
+         ", 0.0, 0.0]\nradius = 1.0\ninward = true\nspacing = 0.08\nmaterial = \"wall\"\n"
+         "[radiosity]\ntolerance = 1e-4\n";
+}
+
+} // namespace
+
+TEST_CASE("a baked furnace: B = pi L / (1 - rho) at every point, and its colour") {
+  const double place = GENERATE(0.0, 5e5);
+  const std::string mode = GENERATE("shadow_rays", "radiosity");
+  CAPTURE(place, mode);
+  const auto points = bake(furnace(place), {"radiosity.direct_light=" + mode});
+  REQUIRE(points.size() > 1500);
+  double mean[3] = {0.0, 0.0, 0.0};
+  for (const LitPoint& p : points) {
+    // Floats in a cube of 2.2: 2^-24 of it and the double's own 1e-10 at 5e5; the file says it to 1e-6.
+    REQUIRE((p.position - Eigen::Vector3d(place, 0.0, 0.0)).norm() == Approx(1.0).margin(1e-6));
+    for (int c = 0; c < 3; ++c) {
+      mean[c] += p.radiosity[c] / static_cast<double>(points.size());
+      const float shown = std::min(1.0f, static_cast<float>(p.radiosity[c] / pi));
+      CHECK(p.colour[c] == Approx(255.0 * linear_to_srgb(shown)).margin(0.51)); // to the nearest byte
+    }
+  }
+  // Areas of the samples 1 % (truths.md §1), each bounce repeats it; 16 estimates of direct light a point.
+  CHECK(mean[0] == Approx(pi * 0.1 / 0.5).epsilon(0.02));
+  CHECK(mean[1] == Approx(pi * 0.2 / 0.5).epsilon(0.02));
+  CHECK(mean[2] == Approx(pi * 0.3).epsilon(1e-5)); // black in blue: what it shines with, and nothing else
+}
+
+TEST_CASE("baked radiosity is linear in the light, beyond what a byte shows") {
+  const auto lit = bake(furnace(0.0)), bright = bake(furnace(0.0), {"material.wall.emission=[1e10, 2e10, 3e10]"});
+  REQUIRE(lit.size() == bright.size());
+  for (std::size_t i = 0; i < lit.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      REQUIRE(bright[i].radiosity[c] == Approx(1e11 * lit[i].radiosity[c]).epsilon(1e-5)); // float rounding
+}

@@ -1,0 +1,28 @@
+/// The fast solver against the exact one, point by point (method.md section 4).
+#include "host/passes/radiosity.h"
+#include "tests/support/device.h"
+#include "tests/support/exchange.h"
+#include "tests/support/lit_room.h"
+#include <catch2/catch.hpp>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+TEST_CASE("fmm and V-map as they come are within 1 % of the direct solver: room with a block, a body and a lamp") {
+  const LitRoom room(session(), 5000);
+  RadiositySettings settings;
+  const ExchangeScene scene{room.pools, room.variant, room.points, {}};
+  const auto silent = [](const std::string&) {};
+  const RadiosityMap map = map_visibility(session(), scene, settings, silent);
+  const RadiosityField fast = solve_radiosity_field(session(), map, {room.direct, {}}, settings, silent);
+  settings.method = "direct";
+  const RadiosityField exact = solve_radiosity_directly(session(), scene, {room.direct, {}}, settings, silent);
+  REQUIRE(fast.solution.end == SolveEnd::converged);
+  REQUIRE(exact.solution.end == SolveEnd::converged);
+  const double of_b = relative_l2(room.radiosity(fast.irradiance), room.radiosity(exact.irradiance));
+  const std::vector<double> h_fast(fast.irradiance.begin(), fast.irradiance.end()),
+      h_exact(exact.irradiance.begin(), exact.irradiance.end());
+  // 0.62 %; 2.7 % with one share for all points of a pair of clusters (point_samples = 0).
+  CHECK(of_b < 0.01);
+  CHECK(relative_l2(h_fast, h_exact) < 0.015); // 1.06 %: what surfaces send each other, without the direct light
+}
