@@ -62,6 +62,17 @@ std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat>
   return emitted;
 }
 
+std::vector<float> reflected_radiosity(const IndirectRequest& request, const IndirectLight& light) {
+  std::vector<float> reflected(3 * request.points.size);
+  for (std::size_t i = 0; i < reflected.size(); ++i) {
+    const Splat& s = request.points[i / 3];
+    if (!exchanges_light(request.scene.materials[static_cast<std::size_t>(s.material)])) continue;
+    const float caustic = request.caustic.size > 0 ? request.caustic[i] : 0.0f;
+    reflected[i] = s.colour[i % 3] * (light.direct[i] + caustic + light.from_surfaces[i]);
+  }
+  return reflected;
+}
+
 bool direct_light_by_radiosity(const Scene& scene) {
   return scene.radiosity.direct_light == "radiosity";
 }
@@ -153,9 +164,12 @@ RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const In
   direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
-  RadiosityField field = map != nullptr
-                             ? solve_radiosity_field(session, *map, {direct, emitted}, settings, watch.report())
-                             : solve_radiosity_directly(session, exchange, {direct, emitted}, settings, watch.report());
+  std::vector<float> entering = direct;
+  for (std::size_t i = 0; i < request.caustic.size; ++i)
+    entering[i] += request.caustic[i];
+  const EnteringLight light{entering, emitted};
+  RadiosityField field = map != nullptr ? solve_radiosity_field(session, *map, light, settings, watch.report())
+                                        : solve_radiosity_directly(session, exchange, light, settings, watch.report());
   stages.finish(request.points.size, "points");
   return field;
 }

@@ -1,5 +1,6 @@
 #include "host/app/photon_stage.h"
 #include "host/error.h"
+#include "host/photon/diffuse_photons.h"
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -19,6 +20,22 @@ std::string reason_against(const IndirectRequest& request, bool specular) {
   return {};
 }
 
+/// The stage itself, from these sources.
+void fly(Session& session, const DevicePools& pools, const IndirectRequest& request,
+         const Buffer<cl_float4>& normal_field, const PhotonSources& sources, Caustics& caustics, StageLog& stages) {
+  stages.start("photon");
+  const TracedPhotons traced = send_photons(session, pools, request.variant, request.lighting, sources, request.points,
+                                            normal_field, request.scene.caustics, request.frame.side, request.stop);
+  if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
+  const PhotonLedger& ledger = traced.ledger;
+  stages.finish(ledger.aimed, "photons", ledger.device_seconds);
+  spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
+               ledger.emitted, ledger.stored, ledger.absorbed, ledger.escaped, ledger.cut);
+  caustics.photons.insert(caustics.photons.end(), traced.stored.begin(), traced.stored.end());
+  if (!caustics.ledger) caustics.ledger.emplace();
+  add(ledger, *caustics.ledger);
+}
+
 } // namespace
 
 Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
@@ -32,22 +49,27 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
     stages.skip("photon", reason);
     return caustics;
   }
-  stages.start("photon");
-  TracedPhotons traced =
-      send_photons(session, pools, request.variant, request.lighting, photon_sources(request.lighting, request.points),
-                   request.points, *normal_field, settings, request.frame.side, request.stop);
-  if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
-  caustics.ledger = traced.ledger;
-  if (!traced.stored.empty()) {
-    const double radius = settings.max_radius ? *settings.max_radius / request.frame.side : default_radius;
-    caustics.map =
-        upload_photon_map(session, build_photon_map(traced.stored), static_cast<unsigned>(settings.gather_k), radius);
-  }
-  stages.finish(traced.ledger.aimed, "photons", traced.ledger.device_seconds);
-  spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
-               traced.ledger.emitted, traced.ledger.stored, traced.ledger.absorbed, traced.ledger.escaped,
-               traced.ledger.cut);
+  if (const std::string exchange = reason_against_radiosity(request);
+      settings.place && !exchange.empty() && (settings.feedback || settings.indirect))
+    spdlog::warn("{}: [caustics] feedback and indirect have no effect: {}", settings.place->text(), exchange);
+  fly(session, pools, request, *normal_field, photon_sources(request.lighting, request.points), caustics, stages);
   return caustics;
+}
+
+void add_indirect_caustics(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                           const Buffer<cl_float4>& normal_field, const IndirectLight& light, Caustics& caustics,
+                           StageLog& stages) {
+  fly(session, pools, request, normal_field, sources_of_radiosity(reflected_radiosity(request, light), request.points),
+      caustics, stages);
+}
+
+std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics& caustics,
+                                               const IndirectRequest& request) {
+  if (caustics.photons.empty()) return std::nullopt;
+  const CausticSettings& settings = request.scene.caustics;
+  const double radius = settings.max_radius ? *settings.max_radius / request.frame.side : default_radius;
+  return upload_photon_map(session, build_photon_map(caustics.photons), static_cast<unsigned>(settings.gather_k),
+                           radius);
 }
 
 } // namespace pointgi

@@ -6,7 +6,7 @@
 namespace pointgi {
 
 struct Caustics {
-  std::optional<DevicePhotonMap> map; ///< absent: no photon was stored
+  std::vector<Photon> photons;        ///< stored on diffuse surfaces
   std::optional<PhotonLedger> ledger; ///< absent: the stage did not run
 };
 
@@ -15,5 +15,15 @@ struct Caustics {
 /// Error(interrupted) when request.stop says so.
 Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
                           const Buffer<cl_float4>* normal_field, StageLog& stages);
+
+/// The stage once more: as many photons from the diffuse surfaces, by the light that the stages of `light` found
+/// (LD+S+D), are added to those of the lights. Only after a run_photon_stage that sent some; throws as it does.
+void add_indirect_caustics(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                           const Buffer<cl_float4>& normal_field, const IndirectLight& light, Caustics& caustics,
+                           StageLog& stages);
+
+/// The photons as the picture gathers them; absent where none was stored.
+std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics& caustics,
+                                               const IndirectRequest& request);
 
 } // namespace pointgi

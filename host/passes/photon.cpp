@@ -21,6 +21,7 @@ Photon stored_photon(const PhotonFlight& flight) {
   std::copy_n(flight.position, 3, photon.position);
   photon.direction = flight.direction;
   std::copy_n(flight.power, 3, photon.power);
+  photon.splat = flight.splat;
   return photon;
 }
 
@@ -61,6 +62,17 @@ SceneFeatures features_of(const DeviceLighting& lighting) {
 }
 
 } // namespace
+
+void add(const PhotonLedger& ledger, PhotonLedger& to) {
+  for (const auto member : {&PhotonLedger::aimed, &PhotonLedger::emitted, &PhotonLedger::stored,
+                            &PhotonLedger::absorbed, &PhotonLedger::escaped, &PhotonLedger::cut})
+    to.*member += ledger.*member;
+  for (const auto member : {&PhotonLedger::emitted_power, &PhotonLedger::stored_power, &PhotonLedger::absorbed_power,
+                            &PhotonLedger::escaped_power, &PhotonLedger::cut_power})
+    for (std::size_t c = 0; c < 3; ++c)
+      (to.*member)[c] += (ledger.*member)[c];
+  to.device_seconds += ledger.device_seconds;
+}
 
 TracedPhotons trace_photons(Session& session, const DevicePools& pools, const PhotonRequest& request,
                             const std::function<bool()>& stop) {

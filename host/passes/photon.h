@@ -18,6 +18,9 @@ struct PhotonLedger {
   double device_seconds = 0.0;
 };
 
+/// Enters those of one ledger in another.
+void add(const PhotonLedger& ledger, PhotonLedger& to);
+
 struct TracedPhotons {
   std::vector<Photon> stored; ///< in the order of their numbers
   PhotonLedger ledger;

@@ -76,7 +76,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   Ray ray = e.ray;
   ShadowEnds ends = e.ends;
   Media media = in_air();
-  uint end = PHOTON_ASIDE, bounces = 0u;
+  uint end = PHOTON_ASIDE, bounces = 0u, splat = NO_SPLAT;
   float rays = 0.0f;
   for (; !is_dark(power); ++bounces) {
     Surface s;
@@ -100,6 +100,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     float3 before = power;
     power *= beer_of(media, materials, s.t);
     position = s.position;
+    splat = s.splat;
     end = meet_surface(&s, materials, ray.direction, id, bounces, &media, &scatter, &power);
     absorbed += before - power;
     if (end != PHOTON_ENDS)
@@ -120,5 +121,5 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   store3(emitted, flight->emitted);
   flight->bounces = bounces;
   store3(absorbed, flight->absorbed);
-  flight->reserved = 0u;
+  flight->splat = splat;
 }

@@ -8,7 +8,7 @@ typedef struct Photon {
   float position[3]; /* bytes 0-11: root cube */
   pg_uint direction; /* bytes 12-15: the way it flew, PHOTON_DIRECTION_BITS a component */
   float power[3];    /* bytes 16-27 */
-  pg_uint reserved;  /* bytes 28-31: 0 */
+  pg_uint splat;     /* bytes 28-31: that it was stored on */
 } Photon;
 
 /* A component c of a direction is the signed whole number nearest to c * PHOTON_DIRECTION_SCALE, in bits 0-9 (x), 10-19
@@ -53,7 +53,7 @@ typedef struct PhotonFlight {
   float emitted[3];  /* bytes 32-43: power when it set out */
   pg_uint bounces;   /* bytes 44-47 */
   float absorbed[3]; /* bytes 48-59: what its surfaces and glass took on the way, less what chance gave */
-  pg_uint reserved;  /* bytes 60-63: 0 */
+  pg_uint splat;     /* bytes 60-63: that it met last; of the pool */
 } PhotonFlight;
 
 /* The map is a left-balanced kd-tree over buckets of PHOTON_LANES photons. Three binary levels make one node of
