@@ -53,6 +53,7 @@ ExitCode run_bake(const BakeOptions& options) {
   const IndirectRequest request{ready.choice.variant,   scene, ready.frame,   ready.lighting,
                                 points_of(ready.pools), false, options.quiet, interrupted};
   IndirectLight light = run_indirect_stages(session, ready.on_device, request, stages);
+  stages.skip("photon", ready.lighting.has_specular() ? "a lit cloud holds no caustics" : "no specular material");
   stages.skip("render", "a lit cloud is no picture: it has no camera");
   stages.start("bake");
   if (light.direct.empty()) {

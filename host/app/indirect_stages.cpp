@@ -20,10 +20,6 @@ unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
   return sure ? 1 : light_samples;
 }
 
-bool has_light(const DeviceLighting& lighting) {
-  return !lighting.delta.empty() || !lighting.emitters.empty() || lighting.has_environment;
-}
-
 /// Whether some splat reflects light to others.
 bool has_reflectors(const Scene& scene, View<Splat> points) {
   return std::any_of(points.begin(), points.end(), [&](const Splat& s) {
@@ -64,6 +60,17 @@ std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat>
     for (std::size_t c = 0; c < 3; ++c)
       emitted[3 * p + c] = 3.14159265f * lighting.materials[static_cast<std::size_t>(points[p].material)].emission[c];
   return emitted;
+}
+
+std::vector<float> reflected_radiosity(const IndirectRequest& request, const IndirectLight& light) {
+  std::vector<float> reflected(3 * request.points.size);
+  for (std::size_t i = 0; i < reflected.size(); ++i) {
+    const Splat& s = request.points[i / 3];
+    if (!exchanges_light(request.scene.materials[static_cast<std::size_t>(s.material)])) continue;
+    const float caustic = request.caustic.size > 0 ? request.caustic[i] : 0.0f;
+    reflected[i] = s.colour[i % 3] * (light.direct[i] + caustic + light.from_surfaces[i]);
+  }
+  return reflected;
 }
 
 bool direct_light_by_radiosity(const Scene& scene) {
@@ -114,7 +121,7 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
 std::string reason_against_radiosity(const IndirectRequest& request) {
   if (request.by_paths) return "the path tracer makes the picture";
   if (request.scene.radiosity.method == "none") return "radiosity.method = \"none\": direct light only";
-  if (!has_light(request.lighting)) return "the scene has no light and no emission";
+  if (!request.lighting.has_light()) return "the scene has no light and no emission";
   if (!has_reflectors(request.scene, request.points)) return "nothing in the scene is diffuse with an albedo above 0";
   return {};
 }
@@ -157,9 +164,12 @@ RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const In
   direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
-  RadiosityField field = map != nullptr
-                             ? solve_radiosity_field(session, *map, {direct, emitted}, settings, watch.report())
-                             : solve_radiosity_directly(session, exchange, {direct, emitted}, settings, watch.report());
+  std::vector<float> entering = direct;
+  for (std::size_t i = 0; i < request.caustic.size; ++i)
+    entering[i] += request.caustic[i];
+  const EnteringLight light{entering, emitted};
+  RadiosityField field = map != nullptr ? solve_radiosity_field(session, *map, light, settings, watch.report())
+                                        : solve_radiosity_directly(session, exchange, light, settings, watch.report());
   stages.finish(request.points.size, "points");
   return field;
 }
@@ -168,7 +178,7 @@ RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const In
 
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request) {
   const StageWatch watch(session, "direct light", request);
-  if (!has_light(request.lighting)) return std::vector<float>(3 * request.points.size);
+  if (!request.lighting.has_light()) return std::vector<float>(3 * request.points.size);
   return direct_light(session, pools, request, true);
 }
 

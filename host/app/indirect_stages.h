@@ -28,6 +28,8 @@ struct IndirectRequest {
   bool by_paths = false;      ///< a path tracer makes the picture
   bool quiet = false;         ///< no progress
   std::function<bool()> stop; ///< asked before every launch
+  View<float> caustic{};      ///< [points x 3] as IndirectLight: irradiance that photons bring and that surfaces pass
+                              ///< on; empty: none
 };
 
 /// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws Error(input)
@@ -43,6 +45,10 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
 
 /// IndirectLight::direct where no stage of these has found it, because no surface sends any light to another.
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request);
+
+/// rho (H_direct + H_caustic + H(B)): what each point reflects to all sides, [points x 3] as IndirectLight; 0 of points
+/// that do not exchange light. `light`: of these stages, which have run.
+std::vector<float> reflected_radiosity(const IndirectRequest& request, const IndirectLight& light);
 
 /// pi L_e: radiosity that each point shines with, [points x 3] as IndirectLight.
 std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points);

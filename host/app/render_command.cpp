@@ -1,6 +1,6 @@
 #include "host/app/commands.h"
-#include "host/app/indirect_stages.h"
 #include "host/app/interrupt.h"
+#include "host/app/light_stages.h"
 #include "host/app/prepared_scene.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
@@ -178,21 +178,18 @@ ExitCode run_render(const RenderOptions& options) {
   catch_interrupts();
   const IndirectRequest wanted{variant,           scene,         ready.frame, lighting, points_of(pools),
                                paths.has_value(), options.quiet, interrupted};
-  const IndirectLight indirect = run_indirect_stages(session, ready.on_device, wanted, stages);
-  const std::optional<Buffer<cl_float4>> field = normal_field_of(session, lighting, points_of(pools), stages);
-  const char* no_photons = field ? "caustics are not in this version" : "no specular material";
-  stages.skip("photon", no_photons);
-  if (scene.caustics.place) spdlog::warn("{}: [caustics] has no effect: {}", scene.caustics.place->text(), no_photons);
+  const SceneLight light = run_light_stages(session, ready.on_device, wanted, stages);
   RenderRequest request{window, lighting, ready.frame, ready.ids, variant, paths};
   Buffer<cl_float4> irradiance;
-  if (!indirect.from_surfaces.empty()) {
-    irradiance = upload_irradiance(session, indirect, scene);
+  if (!light.indirect.from_surfaces.empty()) {
+    irradiance = upload_irradiance(session, light.indirect, scene);
     request.irradiance = &irradiance;
     request.shadow_rays = !direct_light_by_radiosity(scene);
   }
-  request.normal_field = field ? &*field : nullptr;
+  request.normal_field = light.normal_field ? &*light.normal_field : nullptr;
+  request.photons = light.photons ? &*light.photons : nullptr;
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
-                       film_channels(request.has_indirect(), request.has_specular()),
+                       film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
   const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)
@@ -204,7 +201,9 @@ ExitCode run_render(const RenderOptions& options) {
     stats.variant = ready.choice;
     stats.scene = &scene;
     stats.session = &session;
-    stats.indirect = &indirect;
+    stats.indirect = &light.indirect;
+    stats.photons = light.ledger;
+    stats.photon_watts = lighting.radiance.scale * ready.frame.side * ready.frame.side;
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }

@@ -32,6 +32,25 @@ nlohmann::json variant_json(const TraversalVariant& v) {
 
 namespace {
 
+/// Numbers of photons, and their powers per colour.
+nlohmann::json photons_json(const PhotonLedger& l, double watts) {
+  const auto power = [&](const std::array<double, 3>& p) {
+    return nlohmann::json{p[0] * watts, p[1] * watts, p[2] * watts};
+  };
+  return {{"aimed", l.aimed},
+          {"emitted", l.emitted},
+          {"stored", l.stored},
+          {"absorbed", l.absorbed},
+          {"escaped", l.escaped},
+          {"cut", l.cut},
+          {"power_w",
+           {{"emitted", power(l.emitted_power)},
+            {"stored", power(l.stored_power)},
+            {"absorbed", power(l.absorbed_power)},
+            {"escaped", power(l.escaped_power)},
+            {"cut", power(l.cut_power)}}}};
+}
+
 void add_radiosity(const IndirectLight& light, const RadiositySettings& settings, nlohmann::json& out) {
   out["radiosity"] = {{"method", settings.method},
                       {"direct_light", settings.direct_light},
@@ -89,6 +108,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   if (stats.command == "render") add_render(stats, out);
   if (stats.indirect != nullptr && stats.indirect->solution.applies > 0)
     add_radiosity(*stats.indirect, stats.scene->radiosity, out);
+  if (stats.photons) out["photons"] = photons_json(*stats.photons, stats.photon_watts);
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())
     out["stages"].push_back({{"name", s.name},

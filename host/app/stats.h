@@ -2,6 +2,7 @@
 #include "host/app/indirect_stages.h"
 #include "host/app/stages.h"
 #include "host/cl/session.h"
+#include "host/passes/photon.h"
 #include "host/passes/render.h"
 #include "host/passes/tuned.h"
 #include "octree/pack/pools.h"
@@ -17,6 +18,8 @@ struct Stats {
   const Session* session = nullptr;
   RenderTotals render;                     ///< of the command render
   const IndirectLight* indirect = nullptr; ///< null, or without applies: there was none
+  std::optional<PhotonLedger> photons;     ///< absent: none were sent
+  double photon_watts = 1.0;               ///< W of the ledger's unit
   VariantChoice variant;
   double seconds = 0.0;
 };

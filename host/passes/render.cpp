@@ -38,7 +38,7 @@ enum Channel {
   c_variance_g,
   c_variance_b,
   c_id,
-  c_first_optional ///< Diffuse, then Specular, three each, as many of them as there are
+  c_first_optional ///< Diffuse, then Specular, then Caustic, three each, as many of them as there are
 };
 
 /// Variance of the mean of `samples` radiances: that of one, by their squared differences from the mean, over their
@@ -64,6 +64,7 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
     };
     add(request.has_indirect(), FILM_DIFFUSE);
     add(request.has_specular(), FILM_SPECULAR);
+    add(request.has_caustics(), FILM_CAUSTIC);
     set(c_r + k, all);
     set(c_direct_r + k, direct);
     set(c_variance_r + k, variance_of_mean(scale * scale * double{film[FILM_SPREAD + k]}, samples));
@@ -93,7 +94,7 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
 
 } // namespace
 
-std::vector<ChannelName> film_channels(bool indirect, bool specular) {
+std::vector<ChannelName> film_channels(bool indirect, bool specular, bool caustic) {
   std::vector<ChannelName> names;
   for (const char* name :
        {"R",   "G",   "B",   "A",   "Direct.R", "Direct.G", "Direct.B", "Albedo.R",   "Albedo.G",   "Albedo.B",
@@ -104,6 +105,8 @@ std::vector<ChannelName> film_channels(bool indirect, bool specular) {
     if (indirect) names.push_back({name, false});
   for (const char* name : {"Specular.R", "Specular.G", "Specular.B"})
     if (specular) names.push_back({name, false});
+  for (const char* name : {"Caustic.R", "Caustic.G", "Caustic.B"})
+    if (caustic) names.push_back({name, false});
   return names;
 }
 
@@ -130,8 +133,10 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop) {
   TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
-                     request.irradiance, request.shadow_rays, request.normal_field);
-  const std::size_t channels = film_channels(request.has_indirect(), request.has_specular()).size();
+                     request.irradiance, request.shadow_rays, request.normal_field,
+                     request.has_caustics() ? request.photons : nullptr);
+  const std::size_t channels =
+      film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()).size();
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;

@@ -3,6 +3,7 @@
 #include "host/image/picture_writer.h"
 #include "host/passes/device_pools.h"
 #include "host/passes/light_paths.h"
+#include "host/passes/photon_map.h"
 #include "host/scene/lighting.h"
 #include <functional>
 
@@ -28,8 +29,9 @@ struct RenderTotals {
 };
 
 /// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist. `indirect`: light
-/// from surface to surface is among them; `specular`: what is seen by way of specular surfaces is.
-std::vector<ChannelName> film_channels(bool indirect, bool specular);
+/// from surface to surface is among them; `specular`: what is seen by way of specular surfaces is; `caustic`: what
+/// diffuse surfaces receive by way of them is.
+std::vector<ChannelName> film_channels(bool indirect, bool specular, bool caustic);
 
 struct RenderRequest {
   PixelWindow window;
@@ -42,8 +44,11 @@ struct RenderRequest {
   bool shadow_rays = true; ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
   const Buffer<cl_float4>* normal_field = nullptr; ///< slopes of each point's normal; null: nothing is specular
 
+  const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none
+
   bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
   bool has_specular() const { return normal_field != nullptr; }
+  bool has_caustics() const { return photons != nullptr && has_specular() && !paths; }
 };
 
 /// Renders the window's rows from the top and hands finished bands to `take`, after each launch `progress` (share done,

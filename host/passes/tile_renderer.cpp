@@ -6,10 +6,11 @@ namespace pointgi {
 
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
-                           const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field)
+                           const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
+                           const DevicePhotonMap* photons)
     : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping),
       eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
-      irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field) {
+      irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field), photons_(photons) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
   const bool asks_lights = paths || shadow_rays; // without, splats that shine are still seen, and so is the sky
   SceneFeatures features{asks_lights && !lighting.delta.empty(), !lighting.emitters.empty(),
@@ -18,6 +19,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
     features.specular = true;
     features.glass = lighting.has_type(MATERIAL_GLASS);
     features.phong = lighting.has_type(MATERIAL_PHONG);
+    features.gather_k = photons_ != nullptr ? photons_->k : 0;
   }
   if (paths) {
     std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
@@ -53,8 +55,12 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
     return session_.launch(shade_, pixels(shade_group_), pools..., device_params_, materials_, delta_, emitters_, hits_,
                            film_, number(x), number(y), number(columns), number(rows), number(first_sample));
   };
+  const auto with_photons = [&](const auto&... pools) {
+    return photons_ != nullptr ? shade(pools..., photons_->nodes, photons_->buckets, photons_->params)
+                               : shade(pools...);
+  };
   const auto with_field = [&](const auto&... pools) {
-    return normal_field_ != nullptr ? shade(pools..., *normal_field_) : shade(pools...);
+    return normal_field_ != nullptr ? with_photons(pools..., *normal_field_) : with_photons(pools...);
   };
   seconds.shade = irradiance_ != nullptr ? with_field(pools_.nodes, pools_.leaves, pools_.points, *irradiance_)
                                          : with_field(pools_.nodes, pools_.leaves, pools_.points);

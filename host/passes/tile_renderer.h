@@ -2,6 +2,7 @@
 /// A tile of the picture on the device: hits of its eye rays, then its film.
 #include "host/passes/device_pools.h"
 #include "host/passes/light_paths.h"
+#include "host/passes/photon_map.h"
 #include "host/scene/lighting.h"
 
 namespace pointgi {
@@ -23,7 +24,7 @@ public:
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
                const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
-               const Buffer<cl_float4>* normal_field = nullptr);
+               const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr);
 
   pg_uint samples() const { return params_.samples; }
 
@@ -31,7 +32,11 @@ public:
   TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
 
   /// Scalars a pixel of the film: FILM_CHANNELS, or FILM_CHANNELS_SPECULAR with a normal field.
-  std::size_t film_channels() const { return normal_field_ != nullptr ? FILM_CHANNELS_SPECULAR : FILM_CHANNELS; }
+  std::size_t film_channels() const {
+    return photons_ != nullptr        ? FILM_CHANNELS_CAUSTIC
+           : normal_field_ != nullptr ? FILM_CHANNELS_SPECULAR
+                                      : FILM_CHANNELS;
+  }
 
   /// The film of the last tile, film_channels() a pixel: sums over the samples of all passes since the first.
   std::vector<float> film(int columns, int rows);
@@ -51,6 +56,7 @@ private:
   Buffer<DeltaLight> delta_;
   Buffer<Emitter> emitters_;
   const Buffer<cl_float4>*irradiance_, *normal_field_;
+  const DevicePhotonMap* photons_;
   Buffer<EyeHits> hits_;
   Buffer<float> film_;
 };

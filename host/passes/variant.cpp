@@ -25,10 +25,16 @@ std::string feature_options(const SceneFeatures& features) {
          (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
          (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
          (features.specular ? " -D HAS_SPECULAR" : "") + (features.glass ? " -D HAS_GLASS" : "") +
-         (features.phong ? " -D HAS_PHONG" : "");
+         (features.phong ? " -D HAS_PHONG" : "") +
+         (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
+                                : "");
 }
 
 } // namespace
+
+unsigned gather_room(unsigned k) {
+  return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
+}
 
 std::string name_of(const TraversalVariant& v) {
   const bool wide = v.form == TraversalForm::wide;
@@ -93,6 +99,19 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 
 Program fmm_program(const char* file) {
   return {file, ""};
+}
+
+Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power) {
+  return program(variant, "photon/trace_photons.cl",
+                 feature_options(features) + (equal_power ? " -D EQUAL_POWER" : ""));
+}
+
+Program caustic_irradiance_program(unsigned k) {
+  return {"photon/irradiance.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
+}
+
+Program nearest_photons_program(unsigned k) {
+  return {"photon/nearest.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
 }
 
 } // namespace pointgi

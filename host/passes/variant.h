@@ -35,6 +35,7 @@ struct SceneFeatures {
   bool specular = false;   ///< some splats are no diffuse ones: rays go on, normals are a field
   bool glass = false;      ///< some are glass; specular too then
   bool phong = false;      ///< some have a Phong lobe; specular too then
+  unsigned gather_k = 0;   ///< of the picture: photons an estimate of caustics; 0: there are none; specular too then
 };
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
@@ -71,6 +72,15 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 
 /// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
+
+/// Photons from the lights to diffuse surfaces, trace_photons; the scene has specular surfaces.
+Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power);
+/// Irradiance of given places by the k nearest photons, caustic_irradiance.
+Program caustic_irradiance_program(unsigned k);
+/// Nearest photons of given places, nearest_of_places, for k up to this many.
+Program nearest_photons_program(unsigned k);
+/// Room for photons that a program is built with, to gather k of them: few sizes, or each k would be compiled anew.
+unsigned gather_room(unsigned k);
 
 /// What every program of the variant has in common: the pools and the walk through them.
 std::string build_options(const TraversalVariant& variant);

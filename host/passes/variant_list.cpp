@@ -138,6 +138,10 @@ std::vector<ProgramUse> all_programs() {
   // Not for GPUs yet: their vectors of 8 lanes in arrays are more than a stack frame should be.
   for (const char* file : {"fmm/expand.cl", "fmm/m2l.cl", "fmm/near.cl", "fmm/direct.cl"})
     uses.push_back({fmm_program(file), true, false});
+  // Nor gathering of photons, whose candidates stand in private memory.
+  for (const unsigned k : {64u, 512u, 1024u})
+    for (const Program& program : {nearest_photons_program(k), caustic_irradiance_program(k)})
+      uses.push_back({program, true, false});
   std::map<std::string, std::size_t> known;
   const auto add = [&](const Program& program, bool cpu, bool gpu) {
     const auto [at, is_new] = known.emplace(program.file + "\n" + program.options, uses.size());
@@ -159,6 +163,11 @@ std::vector<ProgramUse> all_programs() {
     add(pairs_program(v), cpu, gpu);
     add(path_program(v, {true, true, true}, true), cpu, gpu);
     add(path_program(v, {true, true, true, false, true, true, true, true}, true), cpu, gpu);
+    for (const unsigned k : {64u, 512u, 1024u})
+      if (k == 64 || plain_but_for_kernel(v))
+        add(shade_program(v, {true, true, true, true, true, true, true, true, k}), cpu, false);
+    for (const bool equal_power : {false, true})
+      add(trace_photons_program(v, {false, false, false, false, true, true, true, true}, equal_power), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);
   }
   return uses;

@@ -20,6 +20,7 @@ struct DeviceLighting {
   std::vector<Emitter> emitters;   ///< splats of emitting materials
   bool has_environment = false;
 
+  bool has_light() const { return !delta.empty() || !emitters.empty() || has_environment; }
   /// Whether some splat's material, not only some material, is of this type.
   bool has_type(pg_uint type) const { return type < 32 && ((types >> type) & 1u) != 0; }
   bool has_specular() const { return (types & ~(1u << MATERIAL_DIFFUSE)) != 0; }

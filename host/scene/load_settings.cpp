@@ -93,11 +93,14 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
 void load_caustics(const TableReader& root, CausticSettings& caustics) {
   const std::optional<TableReader> table = root.table("caustics");
   if (!table) return;
-  table->allow_only({"photons", "gather_k", "power"});
+  table->allow_only({"photons", "gather_k", "power", "max_radius", "feedback", "indirect"});
   caustics.place = table->place();
   if (const auto photons = table->integer("photons", limits::photons)) caustics.photons = *photons;
   if (const auto gather = table->integer("gather_k", limits::gather_k)) caustics.gather_k = static_cast<int>(*gather);
   if (const auto power = table->choice("power", {"unbiased", "equal"})) caustics.power = *power;
+  if (const auto radius = table->number("max_radius", limits::length)) caustics.max_radius = *radius;
+  if (const auto feedback = table->boolean("feedback")) caustics.feedback = *feedback;
+  if (const auto indirect = table->boolean("indirect")) caustics.indirect = *indirect;
 }
 
 namespace {

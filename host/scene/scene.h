@@ -134,6 +134,10 @@ struct CausticSettings {
   long long photons = 400000;
   int gather_k = 50;
   std::string power = "unbiased";
+  std::optional<double>
+      max_radius;        ///< world units: photons farther off do not count; absent: a part of the scene's size
+  bool feedback = false; ///< LS+D+: diffuse surfaces pass on what photons bring them
+  bool indirect = false; ///< LD+S+D: diffuse surfaces send photons, too
   std::optional<SourcePlace> place;
 };
 

@@ -16,6 +16,7 @@
 #define POOL_WIDTH_LOG2 12 /* texels a row of the image2d form, log2 */
 #endif
 #include "shared/octree_types.h"
+#include "shared/photon_types.h"
 
 #ifndef TRAVERSAL_FORM
 #define TRAVERSAL_FORM FORM_STEP
@@ -72,9 +73,19 @@ static inline uint pool_component(uint4 texel, uint i) {
 #ifdef HAS_SPECULAR
 /* And how their normals change over their discs: n(u, v) = n + u (f.x a + f.y b) + v (f.z a + f.w b), f = field_pool[i],
  * a and b the tangents of n (host/cloud/normal_field.h). */
-#define POOL_ARGS LIT_ARGS, field_pool
-#define POOL_PARAMS LIT_PARAMS, const __global float4 *restrict field_pool
+#define NORMAL_ARGS LIT_ARGS, field_pool
+#define NORMAL_PARAMS LIT_PARAMS, const __global float4 *restrict field_pool
 #else
-#define POOL_ARGS LIT_ARGS
-#define POOL_PARAMS LIT_PARAMS
+#define NORMAL_ARGS LIT_ARGS
+#define NORMAL_PARAMS LIT_PARAMS
+#endif
+
+#ifdef HAS_CAUSTICS
+/* And the photon map (kernels/lib/photon_gather.cl). */
+#define POOL_ARGS NORMAL_ARGS, photon_nodes, photon_buckets, gather_params
+#define POOL_PARAMS \
+  NORMAL_PARAMS, const __global PhotonNode *restrict photon_nodes, const __global float *restrict photon_buckets, __constant GatherParams *gather_params
+#else
+#define POOL_ARGS NORMAL_ARGS
+#define POOL_PARAMS NORMAL_PARAMS
 #endif

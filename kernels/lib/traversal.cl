@@ -7,6 +7,7 @@
 #define BOUNCED_RAYS
 #endif
 #include "lib/blend.cl"
+#include "lib/lanes8.cl"
 #include "lib/pools.cl"
 #if TRAVERSAL_FORM == FORM_WIDE
 #include "lib/wide_traversal.cl"

@@ -7,6 +7,7 @@
 #define WIDE_LANES 8
 #endif
 #include "lib/blend.cl"
+#include "lib/lanes8.cl"
 #include "lib/pools.cl"
 
 #if WIDE_LANES == 16
@@ -29,25 +30,11 @@ typedef uint8 lanes_u;
 #define HALVES(op, v) (v)
 #endif
 
-/* min and max, not fmin and fmax, which pay for NaN: a hit is never NaN. */
-static inline float smallest8(float8 v) {
-  const float4 a = min(v.lo, v.hi);
-  return min(min(a.x, a.y), min(a.z, a.w));
-}
-
-/* any() is compiled to a branch a lane by some. Byte k is 1 where lane k of a comparison is true. */
-static inline ulong byte_a_lane(int8 comparison) {
-  return as_ulong(convert_char8(comparison)) & 0x0101010101010101ul;
-}
-
 #if WIDE_LANES == 16
 static inline bool any_lane(lanes_i v) { return byte_a_lane(v.lo | v.hi) != 0ul; }
 #else
 static inline bool any_lane(lanes_i v) { return byte_a_lane(v) != 0ul; }
 #endif
-
-/* Index of the lowest byte that is not zero. */
-static inline uint lowest_byte(ulong bytes) { return (uint)popcount((bytes & (0ul - bytes)) - 1ul) >> 3; }
 
 static inline float smallest_lane(lanes_f v) { return smallest8(HALVES(min, v)); }
 

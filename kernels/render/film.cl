@@ -1,9 +1,16 @@
 /* From the 32 samples of a pixel to its film. */
 #include "shared/render_types.h"
 
-/* Sums of a sample: those of the film's first FILM_SUMS channels, then, where there is any, FILM_SPECULAR's three. */
+/* Sums of a sample: those of the film's first FILM_SUMS channels, then, where there is any, FILM_SPECULAR's three, then
+ * FILM_CAUSTIC's. */
 #ifdef HAS_SPECULAR
 #define SUM_SPECULAR FILM_SUMS
+#endif
+#ifdef HAS_CAUSTICS /* never without specular surfaces */
+#define SUM_CAUSTIC (FILM_SUMS + 3)
+#define SAMPLE_SUMS (FILM_SUMS + 6)
+#define FILM_STRIDE FILM_CHANNELS_CAUSTIC
+#elif defined(HAS_SPECULAR)
 #define SAMPLE_SUMS (FILM_SUMS + 3)
 #define FILM_STRIDE FILM_CHANNELS_SPECULAR
 #else
@@ -33,21 +40,26 @@ static inline float sum_of(const __local float* of) {
 
 /* All light of one colour that sample i brings. */
 static inline float radiance_of(const __local PixelSamples* samples, uint colour, int i) {
-  const float radiance = samples->sums[FILM_DIRECT + colour][i] + samples->sums[FILM_DIFFUSE + colour][i];
+  float radiance = samples->sums[FILM_DIRECT + colour][i] + samples->sums[FILM_DIFFUSE + colour][i];
 #ifdef HAS_SPECULAR
-  return radiance + samples->sums[SUM_SPECULAR + colour][i];
-#else
-  return radiance;
+  radiance += samples->sums[SUM_SPECULAR + colour][i];
 #endif
+#ifdef HAS_CAUSTICS
+  radiance += samples->sums[SUM_CAUSTIC + colour][i];
+#endif
+  return radiance;
 }
 
 /* The film's sum of the same. */
 static inline float radiance_of_film(const __global float* pixel, uint colour) {
+  float radiance = pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour];
 #ifdef HAS_SPECULAR
-  return pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour] + pixel[FILM_SPECULAR + colour];
-#else
-  return pixel[FILM_DIRECT + colour] + pixel[FILM_DIFFUSE + colour];
+  radiance += pixel[FILM_SPECULAR + colour];
 #endif
+#ifdef HAS_CAUSTICS
+  radiance += pixel[FILM_CAUSTIC + colour];
+#endif
+  return radiance;
 }
 
 /* Radiance of one colour, and its spread: of this pass about its own mean, then joined with that of the passes before
@@ -59,6 +71,10 @@ static inline void add_radiance_to_film(const __local PixelSamples* samples, uin
 #ifdef HAS_SPECULAR
   float specular = sum_of(samples->sums[SUM_SPECULAR + colour]);
   all += specular;
+#endif
+#ifdef HAS_CAUSTICS
+  float caustic = sum_of(samples->sums[SUM_CAUSTIC + colour]);
+  all += caustic;
 #endif
   const float mean = all / count;
   for (int i = 0; i < (int)count; ++i) {
@@ -74,11 +90,17 @@ static inline void add_radiance_to_film(const __local PixelSamples* samples, uin
 #ifdef HAS_SPECULAR
     specular += pixel[FILM_SPECULAR + colour];
 #endif
+#ifdef HAS_CAUSTICS
+    caustic += pixel[FILM_CAUSTIC + colour];
+#endif
   }
   pixel[FILM_DIRECT + colour] = direct;
   pixel[FILM_DIFFUSE + colour] = diffuse;
 #ifdef HAS_SPECULAR
   pixel[FILM_SPECULAR + colour] = specular;
+#endif
+#ifdef HAS_CAUSTICS
+  pixel[FILM_CAUSTIC + colour] = caustic;
 #endif
   pixel[FILM_SPREAD + colour] = spread;
 }

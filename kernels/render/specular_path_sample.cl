@@ -78,7 +78,7 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
     const bool first = surfaces == 1u;
     const float3 none = (float3)(0.0f), both = found + highlight;
     add_seen(weight * (first ? found : none), weight * (first || mirrored ? none : both),
-             weight * (first ? highlight : mirrored ? both : none), true, sums);
+             weight * (first ? highlight : mirrored ? both : none), none, true, sums);
     Bounce bounce;
     if (!met || surfaces >= lights.params->most_bounces || !choose_bounce(&s, lights, id, ray.direction, &media, &bounce))
       break;

@@ -1,9 +1,10 @@
 /* One sample of a pixel where the scene has specular surfaces: the eye ray goes on from mirrors, through glass and by the
  * lobe of Phong surfaces, one ray at a time, until it meets a surface that is only diffuse (ES*D), a light or nothing.
- * What the eye ray itself meets is Direct and Diffuse as anywhere, everything behind is Specular. */
+ * What the eye ray itself meets is Direct, Diffuse and Caustic as anywhere, everything behind is Specular. */
 #include "render/eye_sample.cl"
 #include "render/film.cl"
 #include "lib/specular.cl"
+#include "render/caustic.cl"
 
 #ifdef HAS_SPECULAR
 
@@ -11,9 +12,14 @@
 #define MOST_EYE_BOUNCES 64u
 
 /* Once a sample and bounce, in one place, without a branch: see add_radiance in kernels/render/path_sample.cl. */
-static inline void add_seen(float3 direct, float3 diffuse, float3 specular, bool first, float* sums) {
+static inline void add_seen(float3 direct, float3 diffuse, float3 specular, float3 caustic, bool first, float* sums) {
   const float3 none = (float3)(0.0f);
-  const float3 behind = first ? specular : direct + diffuse + specular;
+  const float3 behind = first ? specular : direct + diffuse + specular + caustic;
+#ifdef HAS_CAUSTICS
+  sums[SUM_CAUSTIC] += first ? caustic.x : 0.0f;
+  sums[SUM_CAUSTIC + 1] += first ? caustic.y : 0.0f;
+  sums[SUM_CAUSTIC + 2] += first ? caustic.z : 0.0f;
+#endif
   add_direct(first ? direct : none, sums);
   add_diffuse(first ? diffuse : none, sums);
   sums[SUM_SPECULAR] += behind.x;
@@ -68,7 +74,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   for (uint bounces = 0u;; ++bounces) {
     Surface s;
     Scatter scatter;
-    float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), specular = (float3)(0.0f);
+    float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), specular = (float3)(0.0f), caustic = (float3)(0.0f);
     bool goes_on = false;
     sums[FILM_RAYS] += 1.0f;
     const bool met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
@@ -91,10 +97,11 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #ifdef HAS_RADIOSITY
         diffuse = s.albedo * INVERSE_PI * s.irradiance;
 #endif
+        caustic = s.albedo * INVERSE_PI * caustic_irradiance_of(POOL_ARGS, &s);
       }
     }
     direct += seen_light(lights, met, &s);
-    add_seen(weight * direct, weight * diffuse, weight * specular, bounces == 0u, sums);
+    add_seen(weight * direct, weight * diffuse, weight * specular, weight * caustic, bounces == 0u, sums);
     if (met && bounces < most)
       goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);
     /* No longest survival: what loses nothing goes on for MOST_EYE_BOUNCES. */

@@ -100,6 +100,8 @@ typedef struct Material {
 #define FILM_CHANNELS 23
 #define FILM_SPECULAR 23 /* 3: only where the scene has specular surfaces: all that the eye sees by way of them */
 #define FILM_CHANNELS_SPECULAR 26
+#define FILM_CAUSTIC 26 /* 3: only where photons are gathered too: LS+DE */
+#define FILM_CHANNELS_CAUSTIC 29
 #define FILM_NO_POINT 0xffffffffu
 
 #endif

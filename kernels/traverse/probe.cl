@@ -3,6 +3,7 @@
 #include "lib/octree_descent.cl"
 #include "lib/phong.cl"
 #include "lib/rng.cl"
+#include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
 
@@ -42,6 +43,19 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[29] = OFFSET(Material, specular);
   sizes[30] = OFFSET(Material, absorption);
   sizes[31] = OFFSET(Material, ior);
+  sizes[32] = sizeof(Photon);
+  sizes[33] = OFFSET(Photon, power);
+  sizes[34] = sizeof(PhotonNode);
+  sizes[35] = OFFSET(PhotonNode, high);
+  sizes[36] = sizeof(PhotonLeaf);
+  sizes[37] = OFFSET(PhotonLeaf, first);
+  sizes[38] = sizeof(PhotonAim);
+  sizes[39] = OFFSET(PhotonAim, share);
+  sizes[40] = sizeof(PhotonFlight);
+  sizes[41] = OFFSET(PhotonFlight, end);
+  sizes[42] = OFFSET(PhotonFlight, absorbed);
+  sizes[43] = sizeof(GatherParams);
+  sizes[44] = OFFSET(GatherParams, radius2);
 }
 
 /* nodes[i] = the leaf or empty node that holds positions[i] (xyz), for i < count. */

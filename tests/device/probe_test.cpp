@@ -1,5 +1,6 @@
 #include "host/passes/device_pools.h"
 #include "octree/ref/descend.h"
+#include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
 #include "tests/support/clouds.h"
@@ -46,6 +47,19 @@ TEST_CASE("device and host lay the shared structs out alike") {
       offsetof(Material, specular),
       offsetof(Material, absorption),
       offsetof(Material, ior),
+      sizeof(Photon),
+      offsetof(Photon, power),
+      sizeof(PhotonNode),
+      offsetof(PhotonNode, high),
+      sizeof(PhotonLeaf),
+      offsetof(PhotonLeaf, first),
+      sizeof(PhotonAim),
+      offsetof(PhotonAim, share),
+      sizeof(PhotonFlight),
+      offsetof(PhotonFlight, end),
+      offsetof(PhotonFlight, absorbed),
+      sizeof(GatherParams),
+      offsetof(GatherParams, radius2),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_layout");

@@ -68,6 +68,24 @@ TEST_CASE("bake gives the same bytes again, on any number of threads; exposure c
   CHECK(differ > 1000);
 }
 
+TEST_CASE("bake of a scene with a mirror: its light without caustics, and the list of stages says so") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("mirror.toml", mirror_scene());
+  const Run run = run_program("bake " + scene + " -o " + folder.file("x.ply") + " --stats " + folder.file("s.json"));
+  CAPTURE(run.err);
+  REQUIRE(run.code == 0);
+  const auto stats = nlohmann::json::parse(std::ifstream(folder.file("s.json")));
+  std::size_t found = 0;
+  for (const auto& stage : stats["stages"]) {
+    if (stage["name"] != "photon") continue;
+    CHECK(stage["ran"] == false);
+    CHECK(stage["reason"] == "a lit cloud holds no caustics");
+    ++found;
+  }
+  CHECK(found == 1);
+  CHECK(stats.count("photons") == 0);
+}
+
 TEST_CASE("bake refuses before the work what it cannot do") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene());

@@ -122,6 +122,26 @@ TEST_CASE("light between surfaces is part of a picture unless the scene or the c
   CHECK(reason_of(stats_of(cloud, " --size 16x12")["stages"], "fmm").empty()); // a bare cloud, too
 }
 
+TEST_CASE("a mirror adds the stages normals and photon, and the channels of their light") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("mirror.toml", mirror_scene());
+  const auto stats_of = [&](const std::string& options) {
+    const Run run = run_program("render " + scene + " --quiet -o " + folder.file("x.exr") + " --stats " +
+                                folder.file("s.json") + options);
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    return json_of(folder.file("s.json"));
+  };
+  const auto whole = stats_of(" --set caustics.photons=2000");
+  CHECK(names_of(whole["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "normals", "photon", "render", "image"});
+  CHECK(whole["photons"]["stored"] > 0);
+  for (const char* channel : {"Diffuse.G", "Specular.G", "Caustic.G"})
+    CHECK(read_exr(folder.file("x.exr")).channels.count(channel) == 1);
+  CHECK(reason_of(stats_of(" --set caustics.photons=0")["stages"], "photon") == "caustics.photons = 0");
+  CHECK(reason_of(stats_of(" --integrator path")["stages"], "photon") == "the path tracer makes the picture");
+}
+
 TEST_CASE("wrong usage is exit code 2 and says what is right") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene());

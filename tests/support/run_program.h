@@ -39,4 +39,12 @@ inline const char* small_scene() {
          "[[light]]\ntype = \"point\"\nposition = [1.0, 2.0, 2.0]\npower_w = [90.0, 90.0, 90.0]\n";
 }
 
+/// The same with a mirror below.
+inline std::string mirror_scene() {
+  return std::string(small_scene()) +
+         "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\n"
+         "[[shape]]\ntype = \"quad\"\ncorner = [-1.0, -1.0, -1.0]\nedge_u = [0.0, 0.0, 2.0]\n"
+         "edge_v = [2.0, 0.0, 0.0]\nspacing = 0.1\nmaterial = \"mirror\"\n";
+}
+
 } // namespace pointgi::test

@@ -115,6 +115,8 @@ direct_light = "radiosity"
 photons = 100000000
 gather_k = 80
 power = "equal"
+feedback = true
+indirect = true
 [octree]
 branching = 4
 order = "hilbert"
@@ -170,6 +172,8 @@ TEST_CASE("every key of the settings arrives", "[scene]") {
   CHECK(scene.caustics.photons == 100'000'000);
   CHECK(scene.caustics.gather_k == 80);
   CHECK(scene.caustics.power == "equal");
+  CHECK(scene.caustics.feedback);
+  CHECK(scene.caustics.indirect);
   CHECK(scene.caustics.place.has_value());
   CHECK(scene.octree.branching == 4u);
   CHECK(scene.octree.order == PointOrder::hilbert);
@@ -297,6 +301,8 @@ TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
   CHECK(scene.radiosity.direct_light == "shadow_rays");
   CHECK_FALSE(scene.radiosity.place.has_value());
   CHECK(scene.caustics.photons == 400000);
+  CHECK_FALSE(scene.caustics.feedback);
+  CHECK_FALSE(scene.caustics.indirect);
   CHECK_FALSE(scene.caustics.place.has_value());
   CHECK(scene.warnings.empty());
 }

@@ -1,0 +1,20 @@
+#pragma once
+/// All stages of light between the octree and the picture, in the order that the scene asks for.
+#include "host/app/photon_stage.h"
+
+namespace pointgi {
+
+struct SceneLight {
+  IndirectLight indirect;
+  std::optional<Buffer<cl_float4>> normal_field; ///< absent: nothing is specular
+  std::optional<DevicePhotonMap> photons;        ///< absent: none was stored
+  std::optional<PhotonLedger> ledger;            ///< absent: none was sent
+};
+
+/// `vmap`, `fmm`, `normals`, `photon`; with caustics.feedback `normals` and `photon` first, as diffuse surfaces then
+/// pass on what the photons bring; with caustics.indirect `photon` once more at the end, from these surfaces. Throws
+/// what the stages throw.
+SceneLight run_light_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                            StageLog& stages);
+
+} // namespace pointgi

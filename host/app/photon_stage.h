@@ -1,0 +1,29 @@
+#pragma once
+/// The stage `photon`: which scenes need it, and what it found.
+#include "host/app/indirect_stages.h"
+#include "host/passes/photon.h"
+
+namespace pointgi {
+
+struct Caustics {
+  std::vector<Photon> photons;        ///< stored on diffuse surfaces
+  std::optional<PhotonLedger> ledger; ///< absent: the stage did not run
+};
+
+/// Sends photons where the scene has specular splats, light and caustics.photons > 0, and says why not where it does
+/// not. `normal_field`: of the specular splats; null: there are none. Throws Error(memory) for too many photons,
+/// Error(interrupted) when request.stop says so.
+Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                          const Buffer<cl_float4>* normal_field, StageLog& stages);
+
+/// The stage once more: as many photons from the diffuse surfaces, by the light that the stages of `light` found
+/// (LD+S+D), are added to those of the lights. Only after a run_photon_stage that sent some; throws as it does.
+void add_indirect_caustics(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                           const Buffer<cl_float4>& normal_field, const IndirectLight& light, Caustics& caustics,
+                           StageLog& stages);
+
+/// The photons as the picture gathers them; absent where none was stored.
+std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics& caustics,
+                                               const IndirectRequest& request);
+
+} // namespace pointgi

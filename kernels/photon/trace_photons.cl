@@ -1,0 +1,125 @@
+/* Photons from the lights by way of specular surfaces to diffuse ones: LS+D (method.md section 5).
+ * NDRange: 1-D, a work-item a photon, padded; work-item i follows photon first + i, for i < count, and writes flights[i].
+ * A photon depends on its number alone, not on how they are cut into launches. aims, in the order of their photons,
+ * aim_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER, any leaf will do for a photon, else only its
+ * own. */
+#include "photon/emit.cl"
+#include "lib/specular.cl"
+
+#define DIMENSION_CHOICE 3u
+#define DIMENSION_SCATTER 4u
+
+/* The aim of a photon. */
+static inline uint aim_of(const __global PhotonAim* aims, uint aim_count, uint photon) {
+  uint low = 0u, high = aim_count - 1u;
+  while (low < high) {
+    const uint middle = (low + high + 1u) / 2u;
+    if (aims[middle].first <= photon)
+      low = middle;
+    else
+      high = middle - 1u;
+  }
+  return low;
+}
+
+static inline uint direction_bits(float component, uint shift) {
+  return ((uint)convert_int_rte(clamp(component, -1.0f, 1.0f) * PHOTON_DIRECTION_SCALE) & 1023u) << shift;
+}
+
+static inline void store3(float3 v, __global float* to) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+static inline bool is_dark(float3 power) { return !(power.x > 0.0f || power.y > 0.0f || power.z > 0.0f); }
+
+/* How a photon goes on from a surface that it has met; PHOTON_ENDS where it does. A Phong surface takes it or mirrors it, at
+ * random by its lobe's share in all that it reflects; one that comes straight from the light is mirrored, as its diffuse
+ * part is no caustic. */
+static inline uint meet_surface(const Surface* s, const __global Material* materials, float3 direction, SampleId id,
+                                uint bounces, Media* media, Scatter* scatter, float3* power) {
+  const __global Material* material = materials + s->material;
+  float chance = material->type == MATERIAL_DIFFUSE ? 0.0f : 1.0f;
+#ifdef HAS_PHONG
+  if (material->type == MATERIAL_PHONG && bounces > 0u) {
+    const float3 lobe = load3(material->specular);
+    const float of_lobe = fmax(fmax(lobe.x, lobe.y), lobe.z);
+    chance = of_lobe / fmax(fmax(fmax(s->albedo.x, s->albedo.y), s->albedo.z) + of_lobe, 1e-30f);
+  }
+#endif
+  if (!(random4(id, DIMENSION_CHOICE).x < chance)) {
+    *power /= 1.0f - chance;
+    return s->front ? PHOTON_STORED : PHOTON_ABSORBED;
+  }
+  if (!scatter_ray(s, materials, direction, random4(id, DIMENSION_SCATTER).xy, media, scatter))
+    return PHOTON_ABSORBED;
+  *power *= scatter->weight / chance;
+  return is_dark(*power) ? PHOTON_ABSORBED : PHOTON_ENDS;
+}
+
+__kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
+                            const __global DeltaLight* delta_lights, const __global Emitter* emitters,
+                            const __global float4* radiance, const __global PhotonAim* aims,
+                            const __global PhotonLeaf* leaves, const __global uint* leaf_splats,
+                            const __global uint* leaf_of, __global PhotonFlight* flights, uint aim_count, uint first,
+                            uint count) {
+  const uint item = get_global_id(0);
+  if (item >= count)
+    return;
+  const __global PhotonAim* aim = aims + aim_of(aims, aim_count, first + item);
+  const PhotonSource from = {{params, materials, delta_lights, emitters}, radiance, leaves, leaf_splats};
+  SampleId id = {(uint2)(first + item, 0x20000000u), 0u, params->seed, 0u};
+  Emission e = emit_photon(POOL_ARGS, from, aim, first + item - aim->first, id);
+  const uint most = min(params->most_bounces, PHOTON_MOST_BOUNCES);
+  float3 power = e.power, emitted = (float3)(0.0f), absorbed = (float3)(0.0f), position = (float3)(0.0f);
+  Ray ray = e.ray;
+  ShadowEnds ends = e.ends;
+  Media media = in_air();
+  uint end = PHOTON_ASIDE, bounces = 0u, splat = NO_SPLAT;
+  float rays = 0.0f;
+  for (; !is_dark(power); ++bounces) {
+    Surface s;
+    Scatter scatter;
+    const Hit hit = trace_closest_from(POOL_ARGS, ray, ends);
+    if (!blended_surface(POOL_ARGS, ray, ends, hit, &s, &rays)) {
+      end = bounces > 0u ? PHOTON_ESCAPED : PHOTON_ASIDE;
+      break;
+    }
+    if (bounces == 0u) {
+#ifdef EQUAL_POWER
+      if (leaf_of[s.splat] == NO_PHOTON_LEAF)
+        break;
+#else
+      if (leaf_of[s.splat] != aim->leaf)
+        break;
+#endif
+      emitted = power;
+    }
+    media = media_before(media, &s, materials);
+    float3 before = power;
+    power *= beer_of(media, materials, s.t);
+    position = s.position;
+    splat = s.splat;
+    end = meet_surface(&s, materials, ray.direction, id, bounces, &media, &scatter, &power);
+    absorbed += before - power;
+    if (end != PHOTON_ENDS)
+      break;
+    end = PHOTON_CUT;
+    if (bounces + 2u > most) /* no diffuse surface may follow */
+      break;
+    ray = scattered_ray(&s, &scatter, params->step_delta);
+    ends = scattered_ends(&s, &scatter, media);
+    id.vertex += 1u;
+  }
+  __global PhotonFlight* flight = flights + item;
+  store3(position, flight->position);
+  flight->direction = direction_bits(ray.direction.x, 0u) | direction_bits(ray.direction.y, 10u) |
+                      direction_bits(ray.direction.z, 20u);
+  store3(end == PHOTON_ASIDE ? (float3)(0.0f) : power, flight->power);
+  flight->end = end;
+  store3(emitted, flight->emitted);
+  flight->bounces = bounces;
+  store3(absorbed, flight->absorbed);
+  flight->splat = splat;
+}

@@ -1,0 +1,20 @@
+/* Light that surfaces receive by way of mirrors and glass, gathered from the photon map (method.md section 5).
+ *   HAS_CAUSTICS  defined where there are photons */
+#include "lib/traversal.cl"
+#ifdef HAS_CAUSTICS
+#define GATHER_SURFACE
+#include "lib/photon_gather.cl"
+#endif
+
+/* Irradiance [W/m2, scaled] of the surface's front. */
+static inline float3 caustic_irradiance_of(POOL_PARAMS, const Surface* s) {
+#ifdef HAS_CAUSTICS
+  const PhotonPool pool = {photon_nodes, photon_buckets};
+  const GatherPlace place = {s->position, s->normal};
+  NO_PHOTONS_YET(near);
+  nearest_photons(pool, gather_params, place, gather_params->k, INFINITY, &near);
+  return irradiance_of(pool, gather_params, gather_params->k, &near);
+#else
+  return (float3)(0.0f);
+#endif
+}

@@ -1,0 +1,145 @@
+#include "host/error.h"
+#include "tests/support/photon_scene.h"
+#include <catch2/catch.hpp>
+#include <cstring>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+std::string number(double x) {
+  return std::to_string(x);
+}
+
+/// A mirrored ball of radius 0.5 about the origin, a light of 1 W/sr at a distance of 1.5 and a floor.
+std::string ball_scene(double spacing, const std::string& caustics, const std::string& light = "") {
+  const std::string lamp = light.empty() ? "[[light]]\ntype = \"point\"\nposition = [0.0, 1.5, 0.0]\n"
+                                           "power_w = [12.566371, 12.566371, 12.566371]\n"
+                                         : light;
+  return "version = 1\n[caustics]\n" + caustics + "\n" + lamp +
+         "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\n"
+         "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+         "[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.5\nmaterial = \"mirror\"\nspacing = " +
+         number(spacing) +
+         "\n[[shape]]\ntype = \"quad\"\ncorner = [-2.0, -1.0, -2.0]\nedge_u = [0.0, 0.0, 4.0]\nedge_v = [4.0, 0.0, "
+         "0.0]\n"
+         "material = \"white\"\nspacing = 0.1\n";
+}
+
+/// Everything that can happen to a photon.
+const std::string all_of_it =
+    "version = 1\n[caustics]\nphotons = 20000\n[environment]\nradiance = [0.1, 0.2, 0.3]\n"
+    "[[light]]\ntype = \"point\"\nposition = [0.3, 1.4, 0.2]\npower_w = [10.0, 20.0, 30.0]\n"
+    "[[light]]\ntype = \"directional\"\ndirection = [0.2, -1.0, 0.1]\nirradiance = [3.0, 2.0, 1.0]\n"
+    "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\nreflectance = [0.9, 0.5, 0.1]\n"
+    "[[material]]\nname = \"glass\"\ntype = \"glass\"\nior = 1.5\nabsorption = [0.1, 1.0, 3.0]\n"
+    "[[material]]\nname = \"gloss\"\ntype = \"phong\"\nalbedo = [0.3, 0.4, 0.5]\nspecular = [0.4, 0.4, 0.4]\n"
+    "exponent = 30.0\n"
+    "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+    "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\nemission = [5.0, 5.0, 4.0]\n"
+    "[[shape]]\ntype = \"sphere\"\ncentre = [-0.5, 0.0, 0.0]\nradius = 0.3\nmaterial = \"mirror\"\nspacing = 0.05\n"
+    "[[shape]]\ntype = \"sphere\"\ncentre = [0.4, 0.0, 0.0]\nradius = 0.4\nmaterial = \"glass\"\nspacing = 0.05\n"
+    "[[shape]]\ntype = \"quad\"\ncorner = [-1.0, -1.0, 0.9]\nedge_u = [2.0, 0.0, 0.0]\nedge_v = [0.0, 2.0, 0.0]\n"
+    "material = \"gloss\"\nspacing = 0.1\n"
+    "[[shape]]\ntype = \"quad\"\ncorner = [-1.0, -1.0, -1.0]\nedge_u = [0.0, 0.0, 2.0]\nedge_v = [2.0, 0.0, 0.0]\n"
+    "material = \"white\"\nspacing = 0.1\n"
+    "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 1.5, -0.5]\nnormal = [0.0, -1.0, 0.3]\nradius = 0.2\n"
+    "material = \"lamp\"\nspacing = 0.05\n";
+
+double flux(const PhotonScene& scene, const PhotonLedger& ledger) {
+  return scene.watts(ledger.emitted_power[1]);
+}
+
+bool same_bits(const std::vector<Photon>& a, const std::vector<Photon>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Photon)) == 0;
+}
+
+} // namespace
+
+TEST_CASE("the flux aimed at a mirrored ball is the light's over its solid angle") {
+  const double exact = 2.0 * 3.14159265358979 * (1.0 - std::sqrt(1.0 - 1.0 / 9.0));
+  // Flat discs on the horizon stick out of the ball by about their radius squared over its diameter, so the error falls
+  // with the spacing; the sampling noise is stratified away to below 0.1 %.
+  double before = 1.0;
+  for (const double spacing : {0.1, 0.05, 0.025}) {
+    const PhotonScene scene(ball_scene(spacing, "photons = 100000"));
+    const TracedPhotons traced = scene.send();
+    const double error = flux(scene, traced.ledger) / exact - 1.0;
+    CAPTURE(spacing, error, traced.ledger.aimed, traced.ledger.emitted);
+    CHECK(std::fabs(error) < before);
+    before = std::fabs(error);
+  }
+  CHECK(before < 0.01);
+}
+
+TEST_CASE("photons of equal power make the flux too large") {
+  // Measured: 2.6, 2.1, 2.2 times the flux at spacings 0.1, 0.05, 0.025: the average discs reach to the far rims of
+  // their splats, so they overlap, and photons that would pass their leaf by meet another. The thesis' way is here to
+  // be compared with; that it is as far off as measured, and no more, is what is checked, with a fifth to spare.
+  const double exact = 2.0 * 3.14159265358979 * (1.0 - std::sqrt(1.0 - 1.0 / 9.0));
+  const PhotonScene scene(ball_scene(0.05, "photons = 100000\npower = \"equal\""));
+  const TracedPhotons traced = scene.send();
+  CHECK(traced.ledger.aimed == 100'000);
+  CHECK(flux(scene, traced.ledger) / exact == Approx(2.1).epsilon(0.2));
+  for (const Photon& photon : traced.stored)
+    REQUIRE(photon.power[1] == traced.stored[0].power[1]);
+}
+
+TEST_CASE("every photon's power is accounted for") {
+  for (const char* power : {"unbiased", "equal"}) {
+    PhotonScene scene(all_of_it);
+    scene.scene.caustics.power = power;
+    const TracedPhotons traced = scene.send();
+    const PhotonLedger& l = traced.ledger;
+    CAPTURE(power, l.aimed, l.emitted, l.stored, l.absorbed, l.escaped, l.cut);
+    CHECK(l.emitted == l.stored + l.absorbed + l.escaped + l.cut);
+    CHECK(l.stored == traced.stored.size());
+    CHECK(l.stored > 1000);
+    CHECK(l.absorbed > 100);
+    CHECK(l.escaped > 1000);
+    for (std::size_t c = 0; c < 3; ++c) {
+      CHECK(l.absorbed_power[c] > 0.01 * l.emitted_power[c]);
+      CHECK(l.stored_power[c] + l.absorbed_power[c] + l.escaped_power[c] + l.cut_power[c] ==
+            Approx(l.emitted_power[c]).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("photons are the same to the bit however they are cut into launches, and others with another seed") {
+  const PhotonScene scene(all_of_it);
+  const auto points = scene.points();
+  const SpecularLeaves leaves = specular_leaves(
+      points, [&](const Splat& s) { return scene.lighting.materials[static_cast<std::size_t>(s.material)].type != 0; },
+      1000, false);
+  EmissionOptions options;
+  options.photons = 3000;
+  const auto all_see = [](View<Splat>, View<Segment> segments) { return std::vector<std::uint8_t>(segments.size, 0); };
+  const EmissionPlan plan = plan_emission(leaves, points, scene.sources, all_see, options);
+  REQUIRE(plan.photons > 3000);
+  const auto traced = [&](std::size_t batch, const DeviceLighting& lighting) {
+    PhotonRequest request{lighting, scene.sources, leaves, plan, *scene.field, scene.variant, scene.placed.frame.side};
+    request.batch = batch;
+    return trace_photons(session(), scene.pools, request, [] { return false; }).stored;
+  };
+  const auto once = traced(plan.photons, scene.lighting);
+  CHECK(once.size() > 100);
+  CHECK(same_bits(once, traced(1000, scene.lighting)));
+  CHECK(same_bits(once, traced(0, scene.lighting)));
+  DeviceLighting other = scene.lighting;
+  other.params.seed = 2;
+  CHECK_FALSE(same_bits(once, traced(0, other)));
+
+  PhotonRequest request{scene.lighting, scene.sources, leaves, plan, *scene.field, scene.variant, 1.0};
+  request.most_stored = 100;
+  CHECK_THROWS_WITH(trace_photons(session(), scene.pools, request, [] { return false; }),
+                    Catch::Contains("caustics.photons"));
+  CHECK(trace_photons(session(), scene.pools, request, [] { return true; }).stopped);
+}
+
+TEST_CASE("no photons") {
+  PhotonScene scene(ball_scene(0.1, "photons = 0"));
+  const TracedPhotons traced = scene.send();
+  CHECK(traced.stored.empty());
+  CHECK(traced.ledger.aimed == 0);
+}
