@@ -15,8 +15,8 @@ constexpr std::size_t grain = 16;
 /// Near leaves ask every pair of their points, unless they hold more pairs than this (points in one place).
 constexpr std::size_t most_pairs = 1u << 12;
 
-/// More points than this never share an answer.
-constexpr std::size_t largest_group = 64;
+/// More points than this never share an answer: a fraction of a leaf, or leaves show again.
+constexpr std::size_t largest_group = 4;
 
 std::uint32_t ends_of(const ClusterTree& tree, const Link& link) {
   return tree.nodes[link.a].count + tree.nodes[link.b].count;
