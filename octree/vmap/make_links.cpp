@@ -22,7 +22,7 @@ constexpr float most_more_samples = 16.0f;
 /// What has been asked of a pair so far.
 enum class Stage : std::uint8_t {
   fresh,
-  all_blocked, ///< K segments, and above epsilon: asked again with 4 K before it is dropped
+  all_blocked, ///< all of K segments: asked again with 4 K before it is dropped
   leaves       ///< two leaves that exchange light point by point
 };
 
@@ -205,9 +205,9 @@ private:
   void decide_whole(const Pair& pair, const Question& q, std::uint32_t open, Output& out) const {
     const float visible = share(q, open);
     const bool retested = pair.stage == Stage::all_blocked;
-    if ((visible == 0.0f || q.segments == 0) && q.small) return;
+    if (q.small && (q.segments == 0 || (options_.thesis && visible == 0.0f))) return;
     if (visible == 0.0f && !options_.thesis) {
-      // Behind a wall, or almost.
+      // Behind a wall, or almost: what is dropped wrongly all points of the pair miss, and their cluster shows.
       if (!retested) out.next.push_back({pair.a, pair.b, Stage::all_blocked});
       return;
     }
