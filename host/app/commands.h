@@ -23,7 +23,7 @@ struct LightOptions {
 struct RenderOptions : LightOptions {
   std::string size; ///< "WxH"
   std::optional<int> spp;
-  std::string quality = "normal";     ///< draft: a quarter of the samples, high: four times
+  std::string quality = "normal";     ///< draft: a quarter of the samples, four times epsilon; high: four times, half
   std::string integrator = "pointgi"; ///< or "path": unbiased path tracing, the truth to measure others by
   std::string paths;                  ///< of the path tracer: the classes that count (host/passes/light_paths.h)
   std::string trace_file;

@@ -102,8 +102,10 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
   command.add_option("--size", render.size, "image size, WIDTHxHEIGHT (default 640x480)");
   command.add_option("--spp", render.spp, "samples a pixel (default 32)")->check(CLI::Range(1, 65536));
   command
-      .add_option("--quality", render.quality,
-                  "samples a pixel: draft (a quarter of the scene's), normal, high (four times)")
+      .add_option(
+          "--quality", render.quality,
+          "draft: a quarter of the scene's samples a pixel and four times its radiosity.epsilon; normal; high: four "
+          "times the samples, half of epsilon")
       ->check(CLI::IsMember({"draft", "normal", "high"}));
   command
       .add_option("--integrator", render.integrator,

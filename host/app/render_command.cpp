@@ -114,15 +114,21 @@ void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& s
         100.0 * backs);
 }
 
+/// --quality: the picture's noise and the exchange's error together.
+void apply_quality(const RenderOptions& options, Scene& scene) {
+  if (options.quality == "normal") return;
+  const bool draft = options.quality == "draft";
+  if (!options.spp)
+    scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
+  scene.radiosity.epsilon *= draft ? 4.0 : 0.5;
+}
+
 Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path" && !options.paths.empty())
     throw Error(ExitCode::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
   Scene scene = load_any(options.input, all_overrides_of(options));
-  if (!options.spp && options.quality != "normal") {
-    const double factor = options.quality == "draft" ? 0.25 : 4.0;
-    scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * factor)));
-  }
+  apply_quality(options, scene);
   if (options.integrator != "path") require_known_radiosity(scene);
   // Before the work, not after it.
   require_writable_picture(output_of(options));

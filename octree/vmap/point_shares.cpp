@@ -62,6 +62,7 @@ public:
     std::size_t alone = 0;
     for (const Link* link : partial)
       if (!asks_pairs(tree, *link)) alone += ends_of(tree, *link);
+    if (alone == 0) return;
     const std::size_t wanted = std::size_t{options.samples} * tree.points.size();
     group_ = static_cast<std::uint32_t>(std::clamp<std::size_t>((alone + wanted - 1) / wanted, 1, largest_group));
   }
