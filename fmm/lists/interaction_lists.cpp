@@ -79,7 +79,8 @@ SourceLists rows_of(const ClusterTree& tree, View<Link> links, const std::vector
 
 InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, std::size_t point_shares,
                                         const Grids& grids, const ListOptions& options) {
-  if (links.size > 0x7fffffffu) throw std::invalid_argument("too many links for 32-bit lists");
+  if (links.size > 0x7fffffffu)
+    throw std::length_error("radiosity: more than 2^31 links; a larger radiosity.epsilon has less");
   const std::vector<float> largest = largest_areas(tree);
   std::vector<LinkKind> kinds(links.size);
   parallel_ranges(links.size, 4096, [&](std::size_t begin, std::size_t end) {

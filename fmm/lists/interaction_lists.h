@@ -32,10 +32,9 @@ struct ListOptions {
   double direct_below = 1.5;
 };
 
-/// `point_shares`: how many there are for links to refer to.
-/// Throws std::invalid_argument on a link to a cluster that is not there, of a cluster with itself unless it is a near
-/// leaf, or with a share outside (0, 1], or whose points' shares
-/// are not there.
+/// `point_shares`: how many there are for links to refer to. Throws std::invalid_argument on a link to a cluster that
+/// is not there, of a cluster with itself unless it is a near leaf, with a share outside (0, 1], or whose points'
+/// shares are not there; std::length_error on more than 2^31 links.
 InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, std::size_t point_shares,
                                         const Grids& grids, const ListOptions& options);
 

@@ -52,6 +52,8 @@ ExitCode run_bake(const BakeOptions& options) {
   catch_interrupts();
   const IndirectRequest request{ready.choice.variant,   scene, ready.frame,   ready.lighting,
                                 points_of(ready.pools), false, options.quiet, interrupted};
+  if (scene.caustics.place && ready.lighting.has_specular())
+    spdlog::warn("{}: [caustics] has no effect: a lit cloud holds no caustics", scene.caustics.place->text());
   IndirectLight light = run_indirect_stages(session, ready.on_device, request, stages);
   stages.skip("photon", ready.lighting.has_specular() ? "a lit cloud holds no caustics" : "no specular material");
   stages.skip("render", "a lit cloud is no picture: it has no camera");

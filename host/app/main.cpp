@@ -9,6 +9,7 @@
 #include <omp.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <stdexcept>
 
 namespace {
 
@@ -114,7 +115,8 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
       ->check(CLI::IsMember({"pointgi", "path"}));
   command.add_option("--paths", render.paths,
                      "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
-                     "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, + one or more");
+                     "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, S a specular one, + one or "
+                     "more, * any number");
   command.add_option("--trace", render.trace_file, "write stages and kernels as a Chrome trace to this JSON file");
   command.add_option("--pixelbounds", render.pixel_bounds,
                      "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
@@ -233,6 +235,8 @@ int main(int argc, char** argv) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {
     return fail(pointgi::ExitCode::memory, "out of memory; use a smaller cloud or a coarser spacing");
+  } catch (const std::length_error& error) { // more than 32-bit places hold
+    return fail(pointgi::ExitCode::memory, error.what());
   } catch (const std::exception& error) {
     return fail(pointgi::ExitCode::internal, error.what());
   }

@@ -24,14 +24,17 @@ std::string reason_against(const IndirectRequest& request, bool specular) {
 void fly(Session& session, const DevicePools& pools, const IndirectRequest& request,
          const Buffer<cl_float4>& normal_field, const PhotonSources& sources, Caustics& caustics, StageLog& stages) {
   stages.start("photon");
-  const TracedPhotons traced = send_photons(session, pools, request.variant, request.lighting, sources, request.points,
-                                            normal_field, request.scene.caustics, request.frame.side, request.stop);
+  TracedPhotons traced = send_photons(session, pools, request.variant, request.lighting, sources, request.points,
+                                      normal_field, request.scene.caustics, request.frame.side, request.stop);
   if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
   const PhotonLedger& ledger = traced.ledger;
   stages.finish(ledger.aimed, "photons", ledger.device_seconds);
   spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
                ledger.emitted, ledger.stored, ledger.absorbed, ledger.escaped, ledger.cut);
-  caustics.photons.insert(caustics.photons.end(), traced.stored.begin(), traced.stored.end());
+  if (caustics.photons.empty())
+    caustics.photons = std::move(traced.stored);
+  else
+    caustics.photons.insert(caustics.photons.end(), traced.stored.begin(), traced.stored.end());
   if (!caustics.ledger) caustics.ledger.emplace();
   add(ledger, *caustics.ledger);
 }

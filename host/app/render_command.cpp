@@ -120,7 +120,7 @@ void apply_quality(const RenderOptions& options, Scene& scene) {
   const bool draft = options.quality == "draft";
   if (!options.spp)
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
-  scene.radiosity.epsilon *= draft ? 4.0 : 0.5;
+  scene.radiosity.epsilon = std::min(1.0, scene.radiosity.epsilon * (draft ? 4.0 : 0.5));
 }
 
 Scene checked_scene(const RenderOptions& options) {

@@ -106,7 +106,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   out["variant"] = variant_json(stats.variant.variant);
   out["variant"]["source"] = stats.variant.source;
   if (stats.command == "render") add_render(stats, out);
-  if (stats.indirect != nullptr && stats.indirect->solution.applies > 0)
+  if (stats.indirect != nullptr && !stats.indirect->from_surfaces.empty())
     add_radiosity(*stats.indirect, stats.scene->radiosity, out);
   if (stats.photons) out["photons"] = photons_json(*stats.photons, stats.photon_watts);
   out["stages"] = json::array();

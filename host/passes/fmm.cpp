@@ -122,8 +122,8 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
   far_rows_ = upload(lists_.far);
   mid_rows_ = upload(lists_.mid);
   near_rows_ = upload(lists_.near_);
-  std::vector<cl_uchar> shares(point_shares.begin(), point_shares.end());
-  shares.resize(shares.size() + FMM_LANES); // blocks read past the last point
+  std::vector<cl_uchar> shares(point_shares.size + FMM_LANES); // blocks read past the last point
+  std::copy(point_shares.begin(), point_shares.end(), shares.begin());
   point_shares_ = session_.upload(shares);
   cluster_buffer_ = session_.upload(device_clusters(tree));
   grid_buffer_ = session_.upload(device_grids(grids_));

@@ -1,4 +1,6 @@
 #include "host/passes/radiosity.h"
+#include "host/cl/binary_cache.h"
+#include "host/cl/kernel_source.h"
 #include "host/passes/direct.h"
 #include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
@@ -90,8 +92,12 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   options.thesis = settings.vmap == "thesis";
   const DeviceInfo& device = session.info();
   ReportedVisibility reported(oracle, report);
+  char more[80];
+  std::snprintf(more, sizeof more, ", delta %a, kernels %016llx",
+                variant.stepping == Stepping::absolute_delta ? variant.step_delta / scene.side : 0.0,
+                static_cast<unsigned long long>(fnv1a(kernel_source(segments_program(variant).file))));
   map.vmap = kept_or_made_links(map.tree, scene.points, reported, options,
-                                device.name + ", " + device.driver + ", " + name_of(variant), &map.kept);
+                                device.name + ", " + device.driver + ", " + name_of(variant) + more, &map.kept);
   return map;
 }
 
@@ -170,6 +176,7 @@ RadiosityField solve_radiosity_directly(Session& session, const ExchangeScene& s
   const std::vector<Splat> points = points_at(scene, places);
   DirectOptions options;
   options.step_delta = static_cast<float>(scene.variant.step_delta / scene.side);
+  options.progress = [&](double share) { report(std::to_string(static_cast<int>(100.0 * share)) + " % of the rays"); };
   DeviceDirect exchange(session, scene.pools, scene.variant, points, options);
   RadiosityField field = solve_field(exchange, {points, places}, light, settings, report);
   field.rays = exchange.rays();

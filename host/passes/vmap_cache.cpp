@@ -13,7 +13,7 @@ namespace {
 
 constexpr char magic[8] = {'p', 'g', 'i', 'v', 'm', 'a', 'p', '\n'};
 /// To be raised with every change of the file, and of what make_links makes of one key.
-constexpr std::uint32_t version = 6;
+constexpr std::uint32_t version = 7;
 constexpr std::uint32_t byte_order = 0x01020304u; ///< as this machine writes it
 
 /// A link without the padding of the struct, whose bytes are anybody's.

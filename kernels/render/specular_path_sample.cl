@@ -79,8 +79,10 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
     const float3 none = (float3)(0.0f), both = found + highlight;
     add_seen(weight * (first ? found : none), weight * (first || mirrored ? none : both),
              weight * (first ? highlight : mirrored ? both : none), none, true, sums);
+    /* Behind the last surface that counts shadow rays have looked, where it is diffuse; where not, the next ray does. */
     Bounce bounce;
-    if (!met || surfaces >= lights.params->most_bounces || !choose_bounce(&s, lights, id, ray.direction, &media, &bounce))
+    if (!met || !within || !choose_bounce(&s, lights, id, ray.direction, &media, &bounce) ||
+        (!bounce.specular && surfaces >= lights.params->most_bounces))
       break;
     state = path_after(lights.params, state, bounce.specular);
     if (!path_goes_on(lights.params, state) && !(bounce.specular && path_counts(lights.params, state)))

@@ -6,9 +6,9 @@
 namespace pointgi {
 
 enum class LinkKind : std::uint8_t {
-  far,  ///< well separated and wholly facing: expansions (M2L) times the visible share
+  far,  ///< well separated and wholly facing: expansions (M2L); partly visible, as mid
   mid,  ///< little light, facing mixed: the source as one flux vector, both clamps at each receiver
-  near_ ///< leaf pairs: points with points, clamped, times the visible share
+  near_ ///< leaf pairs: points with points, clamped
 };
 
 constexpr std::uint32_t no_point_shares = NO_POINT_SHARES;

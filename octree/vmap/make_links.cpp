@@ -22,7 +22,7 @@ constexpr float most_more_samples = 16.0f;
 /// What has been asked of a pair so far.
 enum class Stage : std::uint8_t {
   fresh,
-  all_blocked, ///< all of K segments: asked again with 4 K before it is dropped
+  all_blocked, ///< all segments: asked again with four times as many before it is dropped
   leaves       ///< two leaves that exchange light point by point
 };
 
@@ -158,9 +158,9 @@ private:
   /// Segments of a pair: the more light goes between the two, the more a hidden part that no segment meets would cost.
   std::uint32_t samples_for(const Pair& pair, bool point_wise, float exchange) const {
     if (point_wise) return 2 * options_.samples;
-    if (pair.stage == Stage::all_blocked) return 4 * options_.samples;
     const float more = exchange > options_.epsilon ? std::min(exchange / options_.epsilon, most_more_samples) : 1.0f;
-    return static_cast<std::uint32_t>(static_cast<float>(options_.samples) * more);
+    const auto count = static_cast<std::uint32_t>(static_cast<float>(options_.samples) * more);
+    return pair.stage == Stage::all_blocked ? 4 * count : count;
   }
 
   std::uint32_t ask(const Pair& pair, bool point_wise, float exchange, std::vector<Segment>& segments) const {

@@ -5,8 +5,9 @@
 namespace pointgi {
 
 struct PointShareOptions {
-  unsigned samples = 32; ///< segments a point, about: where it has more links that are partly visible, neighbours share
-                         ///< answers; near leaves ask every pair besides
+  /// A point asks one segment of each link, at near leaves every pair; where the former are more than this on average,
+  /// up to four neighbours share one.
+  unsigned samples = 32;
   std::uint32_t seed = 1;       ///< of the choice of points
   std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
 };

@@ -3,6 +3,7 @@
 #include "host/passes/fmm.h"
 #include "host/passes/radiosity.h"
 #include "host/passes/variant_list.h"
+#include "tests/support/cache_folder.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"
 #include <catch2/catch.hpp>
@@ -18,6 +19,7 @@ void quiet(const std::string&) {}
 
 /// Splats on the device and who of them sees whom, never from a cache.
 struct Exchange {
+  CacheFolder empty;
   TraversalVariant variant = plain_variant(TraversalForm::wide);
   OctreePools pools;
   DevicePools on_device;

@@ -55,8 +55,7 @@ TEST_CASE("a point light in a closed sphere: L = rho I / (pi R^2 (1 - rho)), nea
       CAPTURE(albedo, spacing);
       const Picture picture = render_text(with_radiosity(lit_sphere(albedo, spacing), "tolerance = 1e-4\n"));
       const double error = std::fabs(mean(picture, "G") / truth - 1.0);
-      // 1 % is the bound of truths.md; the V-map's epsilon of 1e-2 darkens by up to as much (octree/vmap/make_links.h),
-      // and each bounce repeats it.
+      // 1 % is the bound of truths.md; what the V-map leaves out is less, and each bounce repeats it.
       CHECK(error < (spacing < 0.1 ? 0.02 : 0.04) / (1.0 - albedo) * 0.5);
       CHECK(error < before + 0.005); // the share that the V-map decides does not fall with the spacing
       before = error;

@@ -28,6 +28,7 @@ void add_plate(std::vector<Splat>& splats, float height, float towards, float ha
 
 /// Splats on the device, and what they exchange.
 struct Stage {
+  CacheFolder empty;
   bool directly = false; ///< by a ray a pair instead of the V-map
   TraversalVariant variant = plain_variant(TraversalForm::wide);
   OctreePools pools;

@@ -88,6 +88,7 @@ TEST_CASE("whatever links hang on is part of the key") {
     change(options);
     return differs(k.tree, k.splats, options);
   };
+  CHECK(with([](LinkOptions& o) { o.point_samples = 3; }));
   CHECK(with([](LinkOptions& o) { o.samples = 3; }));
   CHECK(with([](LinkOptions& o) { o.epsilon = std::nextafter(o.epsilon, 1.0f); }));
   CHECK(with([](LinkOptions& o) { o.separation = 0.5f; }));

@@ -42,8 +42,9 @@ struct Scene {
     options.point_samples = 0;
     links = make_links(tree, oracle, options).links;
   }
+  std::uint64_t rays = 0; ///< of the last shares
   std::vector<std::uint8_t> shares(const PointShareOptions& options) {
-    std::uint64_t rays = 0;
+    rays = 0;
     return make_point_shares(tree, links, oracle, options, rays);
   }
   /// cos cos A / d^4 from j to i; 0 where they do not face each other.
@@ -76,7 +77,7 @@ struct Scene {
 TEST_CASE("shares of points follow what each sees, in the mean exactly") {
   Scene scene;
   PointShareOptions options;
-  options.samples = GENERATE(1000u, 20u);
+  options.samples = GENERATE(1000u, 1u);
   const auto shares = scene.shares(options);
   double by_shares = 0.0, exact = 0.0, difference2 = 0.0, of_links2 = 0.0, points = 0.0;
   for (const Link& link : scene.links) {
@@ -104,6 +105,29 @@ TEST_CASE("shares of points follow what each sees, in the mean exactly") {
   // A segment is as uncertain as visibility is, v (1 - v); near leaves, most of them here, know it of every pair.
   CHECK(difference2 / points < 0.08);
   if (options.samples == 1000) CHECK(difference2 < of_links2);
+}
+
+TEST_CASE("where a point has more links than it may ask, neighbours share answers") {
+  Scene scene;
+  PointShareOptions options;
+  std::uint64_t near_pairs = 0, alone = 0;
+  for (const Link& link : scene.links) {
+    const Cluster &a = scene.tree.nodes[link.a], &b = scene.tree.nodes[link.b];
+    if (link.visible == 1.0f || link.a == link.b) continue;
+    if (link.kind != LinkKind::near_) alone += a.count + b.count;
+    for (std::uint32_t i = a.first_point; link.kind == LinkKind::near_ && i < a.first_point + a.count; ++i)
+      for (std::uint32_t j = b.first_point; j < b.first_point + b.count; ++j)
+        near_pairs += face_each_other(scene.tree.points[i], scene.tree.points[j]);
+  }
+  options.samples = 1000;
+  scene.shares(options);
+  CHECK(scene.rays <= near_pairs + alone); // points that nothing faces ask nothing
+  CHECK(scene.rays > near_pairs + alone / 2);
+  const std::uint64_t all = scene.rays - near_pairs;
+  options.samples = 1;
+  scene.shares(options);
+  CHECK(scene.rays - near_pairs < all / 2); // a quarter, and the ends of rows
+  CHECK(scene.rays - near_pairs >= all / 5);
 }
 
 TEST_CASE("shares of points do not depend on threads or batches, but on the seed") {
