@@ -175,6 +175,12 @@ TEST_CASE("radiosity runs where something shines, is kept, and gives the same bi
   REQUIRE(second.code == 0);
   CHECK_THAT(second.err, Catch::Contains("V-map: kept from an earlier run"));
   CHECK(read_exr(folder.file("a.exr")).channels == read_exr(folder.file("b.exr")).channels);
+  // Made again by two threads, not kept.
+  const Run anew = run_program("render " + scene + " --threads 2 -o " + folder.file("d.exr"),
+                               "POINTGI_CACHE_DIR=" + folder.file("another_cache"));
+  REQUIRE(anew.code == 0);
+  CHECK_THAT(anew.err, !Catch::Contains("kept from an earlier run"));
+  CHECK(read_exr(folder.file("a.exr")).channels == read_exr(folder.file("d.exr")).channels);
   const std::string dark = folder.write("dark.toml", with_radiosity(room_with_block()));
   const Run none =
       run_program("render " + dark + " --set material.2.emission=[0,0,0] -o " + folder.file("c.exr"), cache);
