@@ -163,7 +163,7 @@ static inline void add_bucket(PhotonPool pool, GatherPlace place, uint k, uint b
   const uint number = (uint)popcount(byte_a_lane(found.lo) | (byte_a_lane(found.hi) << 1));
   if (number == 0u)
     return;
-  vstore16(select((float16)(INFINITY), d2, found), 0, near->distance2 + near->count); /* what ties is not in the count */
+  vstore16(d2, 0, near->distance2 + near->count);
   vstore16(bucket * PHOTON_LANES + PHOTON_LANE_NUMBERS, 0, near->photon + near->count);
   near->count += PHOTON_LANES;
   near->fresh += number;
