@@ -243,14 +243,16 @@ static inline void walk_photons(PhotonPool pool, __constant GatherParams* params
 /* As walk_photons, from a guess of the bound: with luck everything farther is passed by from the beginning. */
 static inline void nearest_photons(PhotonPool pool, __constant GatherParams* params, GatherPlace place, uint k,
                                    float guess2, NearPhotons* near) {
-  near->within2 = min(guess2, params->radius2);
+  /* Finite: what arrives at the back is infinitely far, and would never be thrown out. */
+  const float most2 = min(params->radius2, FLT_MAX);
+  near->within2 = min(guess2, most2);
   for (;;) {
     const float begun = near->within2;
     near->count = near->within = near->fresh = 0u;
     walk_photons(pool, params, place, k, near);
-    if (near->within + near->fresh >= k || begun >= params->radius2)
+    if (near->within + near->fresh >= k || begun >= most2)
       break;
-    near->within2 = params->radius2;
+    near->within2 = most2;
   }
 }
 
