@@ -1,5 +1,6 @@
 /// Direct light against the formulas of radiometry. Splat discretisation is an error of its own, so the tests go over
 /// three spacings.
+#include "tests/support/number.h"
 #include "tests/support/render.h"
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,12 +11,6 @@ using namespace pointgi::test;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 /// The picture by direct light alone, which these formulas tell.
 template <typename... Adjust>

@@ -1,4 +1,5 @@
 /// The program keeps its promises at the extremes of truths.md §2.
+#include "tests/support/number.h"
 #include "tests/support/render.h"
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -12,12 +13,6 @@ namespace {
 std::string numbers(double x, double y, double z) {
   char text[120];
   std::snprintf(text, sizeof text, "[%.17g, %.17g, %.17g]", x, y, z);
-  return text;
-}
-
-std::string number(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
   return text;
 }
 

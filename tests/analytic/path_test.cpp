@@ -1,4 +1,5 @@
 /// The path tracer against what is known of light between surfaces (truths.md §1), and its own statistics.
+#include "tests/support/number.h"
 #include "tests/support/render.h"
 #include "tests/support/run_program.h"
 #include "tests/support/statistics.h"
@@ -10,12 +11,6 @@ using namespace pointgi::test;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 Picture trace(const std::string& scene, const std::string& paths = "", unsigned seed = 1,
               const std::vector<std::string>& set = {}) {

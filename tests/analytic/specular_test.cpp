@@ -1,5 +1,6 @@
 /// Mirrors, glass and Phong surfaces in the picture and in the path tracer, against what is known of them (truths.md
 /// §1).
+#include "tests/support/number.h"
 #include "tests/support/render.h"
 #include <catch2/catch.hpp>
 
@@ -9,12 +10,6 @@ using namespace pointgi::test;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 std::string grey(double value) {
   return "[" + number(value) + ", " + number(value) + ", " + number(value) + "]";
