@@ -73,8 +73,11 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t
 
 /* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
 static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
-  float q;
-  const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
+  /* No second judgement of whether the ray meets the disc: one that went on from a surface before it (hit_behind) did so
+   * from another origin, and at the very rim rounding may tell the two apart. */
+  float distance2;
+  const float t = ray_plane(ray.origin, ray.direction, centre, normal.xyz, &distance2);
+  const float q = fmin(distance2 / (centre.w * centre.w), 1.0f);
   b->normal_of_first = normal.xyz;
   b->normal = b->albedo = (float3)(0.0f);
 #ifdef HAS_RADIOSITY

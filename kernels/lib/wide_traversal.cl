@@ -56,8 +56,7 @@ static inline WideRay wide_ray(Ray ray) {
   const float3 d = select(ray.direction, copysign((float3)(1e-18f), ray.direction), fabs(ray.direction) < 1e-18f);
   w.inverse = 1.0f / d;
   w.shift = -ray.origin * w.inverse;
-  /* A ray that is no number meets no box: fmin and fmax would let it meet all, the empty ones too. */
-  if (!(dot3(ray.origin, ray.origin) + dot3(ray.direction, ray.direction) < INFINITY)) {
+  if (!is_finite_ray(ray)) { /* such that it meets no box */
     w.inverse = (float3)(0.0f);
     w.shift = (float3)(INFINITY, -INFINITY, 0.0f);
   }

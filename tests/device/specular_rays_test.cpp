@@ -152,3 +152,42 @@ TEST_CASE("rays into a glass sphere leave it again after two surfaces, up to its
   const auto others = std::count_if(ends.begin(), ends.end(), [](const RayEnd& e) { return e.surfaces != 2.0; });
   CHECK(others <= 3);
 }
+
+TEST_CASE("a disc met at its very rim, behind a back that does not count, is a surface and no NaN") {
+  // Rays pass the rim of the second disc, whose middle the first one hides, and go on from there, another origin than
+  // their own, to just the rim of the third: in some of them rounding tells the two origins apart.
+  const Splat front = make_splat(0.38f, 0.5f, 0.5f, -1.0f, 0.0f, 0.0f, 0.02f),
+              back = make_splat(0.40f, 0.5f, 0.5f, 1.0f, 0.0f, 0.0f, 0.06f),
+              third = make_splat(0.61f, 0.5f, 0.5f, -0.9f, 0.3f, 0.2f, 0.05f);
+  std::vector<RayQuery> rays;
+  for (int k = 0; k < 20000; ++k) {
+    const double angle = 2.399963 * k, rim[2] = {std::cos(angle), std::sin(angle)};
+    // Two directions across the third disc's normal.
+    const double u[3] = {0.0, 0.2 / std::sqrt(0.13), -0.3 / std::sqrt(0.13)};
+    const double n[3] = {third.normal[0], third.normal[1], third.normal[2]};
+    const double v[3] = {n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]};
+    double to[3], from[3], length = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      to[a] = third.position[a] + third.radius * (rim[0] * u[a] + rim[1] * v[a]);
+      from[a] = a == 0 ? 0.1 : to[a] + 1e-3 * std::sin(7.0 * k + a);
+      length += (to[a] - from[a]) * (to[a] - from[a]);
+    }
+    RayQuery ray{};
+    for (int a = 0; a < 3; ++a) {
+      ray.origin[a] = static_cast<float>(from[a]);
+      ray.direction[a] = static_cast<float>((to[a] - from[a]) / std::sqrt(length));
+    }
+    ray.t_max = INFINITY;
+    rays.push_back(ray);
+  }
+  for (const TraversalForm form : traversal_forms()) {
+    const auto ends = trace({front, back, third}, plain_variant(form), 1.5f, rays);
+    std::size_t met = 0;
+    for (const RayEnd& e : ends) {
+      REQUIRE(std::isfinite(e.origin[0] + e.origin[1] + e.origin[2] + e.direction[0]));
+      met += e.surfaces > 0.0 && e.origin[0] > 0.5;
+    }
+    CHECK(met > ends.size() / 4); // about half of them, as rounding has it
+    CHECK(met < ends.size());
+  }
+}

@@ -152,6 +152,17 @@ TEST_CASE("rays end: one splat, coincident splats, discs larger than the cells")
   CHECK(differences(trace_tree(splats, rays, variant), trace_all(splats, rays)) == 0);
 }
 
+TEST_CASE("rays that are no numbers meet nothing, through every kernel") {
+  const float nan = std::nanf(""), inf = INFINITY;
+  std::vector<RayQuery> rays = hard_rays(sphere_splats(500), 8, 3);
+  for (std::size_t k = 0; k < rays.size(); ++k)
+    (k % 2 == 0 ? rays[k].origin : rays[k].direction)[k % 3] = k % 4 < 2 ? nan : inf;
+  for (const TraversalVariant& variant : valid_variants()) {
+    CAPTURE(name_of(variant));
+    CHECK(hits(trace_tree(sphere_splats(500), rays, variant)) == 0);
+  }
+}
+
 TEST_CASE("any-hit says what closest-hit says, and blending agrees between the forms") {
   const auto splats = mixed_splats();
   const auto rays = hard_rays(splats, 100'000, 31);
