@@ -149,26 +149,32 @@ std::vector<ProgramUse> all_programs() {
     uses[at->second].cpu |= cpu;
     uses[at->second].gpu |= gpu;
   };
+  const SceneFeatures diffuse{true, true, true, true}, without_shadow_rays{false, true, false, true, false};
+  const SceneFeatures everything{true, true, true, true, true, true, true, true};
+  const SceneFeatures traced{true, true, true, false, true, true, true, true}; // by paths
+  const SceneFeatures lit{false, false, false, false, true, true, true, true}; // by photons
   for (const TraversalVariant& v : variants) {
     const bool cpu = why_not(v, ideal_device(true)).empty(), gpu = why_not(v, ideal_device(false)).empty();
+    const bool usual_walk = build_options(v) == build_options(plain_variant(v.form)) && !v.fast_math;
+    const bool usual_group = v.group == WorkGroup{};
     add(trace_program(v), cpu, gpu);
     add(eye_rays_program(v), cpu, gpu);
-    add(shade_program(v, {}), cpu, gpu);
-    add(shade_program(v, {true, true, true, true}), cpu, gpu);
-    add(shade_program(v, {false, true, false, true, false}), cpu, gpu);
-    add(shade_program(v, {true, true, true, true, true, true, true, true}), cpu, gpu);
+    if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
+    if (usual_group) add(shade_program(v, {}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
     add(specular_rays_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
-    add(path_program(v, {true, true, true}, true), cpu, gpu);
-    add(path_program(v, {true, true, true, false, true, true, true, true}, true), cpu, gpu);
-    for (const unsigned k : {64u, 512u, 1024u})
-      if (k == 64 || plain_but_for_kernel(v))
-        add(shade_program(v, {true, true, true, true, true, true, true, true, k}), cpu, false);
-    for (const bool equal_power : {false, true})
-      add(trace_photons_program(v, {false, false, false, false, true, true, true, true}, equal_power), cpu, gpu);
+    add(path_program(v, traced, true), cpu, gpu);
+    add(trace_photons_program(v, lit, false), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);
+    if (!usual_walk || !usual_group) continue;
+    add(shade_program(v, diffuse), cpu, gpu);
+    add(shade_program(v, without_shadow_rays), cpu, gpu);
+    for (const unsigned k : {64u, 512u, 1024u})
+      add(shade_program(v, {true, true, true, true, true, true, true, true, k}), cpu, false);
+    add(path_program(v, {true, true, true}, true), cpu, gpu);
+    add(trace_photons_program(v, lit, true), cpu, gpu);
   }
   return uses;
 }

@@ -39,8 +39,9 @@ struct ProgramUse {
   bool cpu = false, gpu = false;
 };
 
-/// Each distinct program of all variants, absolute delta included, with no scene feature and with all of them, and the
-/// programs of the tests.
+/// Distinct programs, those of the tests among them: every walk, absolute delta included, with no scene feature and
+/// with all of them; every work-group and every choice of features with the usual walks only, for one does not hang on
+/// the other and all of their combinations would be compiled for a quarter of an hour.
 std::vector<ProgramUse> all_programs();
 
 /// A device of this kind that lacks nothing, to ask what is valid without a device.
