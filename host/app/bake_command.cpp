@@ -2,30 +2,17 @@
 #include "host/app/indirect_stages.h"
 #include "host/app/interrupt.h"
 #include "host/app/lit_cloud.h"
+#include "host/app/output_files.h"
 #include "host/app/prepared_scene.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
-#include "host/atomic_file.h"
 #include "host/cloud/input_file.h"
 #include <cstdio>
-#include <filesystem>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
 
 namespace {
-
-/// What is computed must not replace what it was computed from.
-void refuse_input_as_output(const BakeOptions& options, const Scene& scene) {
-  std::vector<std::string> inputs{options.input};
-  for (const CloudSettings& cloud : scene.clouds)
-    inputs.push_back(cloud.file);
-  for (const std::string& input : inputs) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(input, options.output, ignored))
-      throw Error(ExitCode::usage, "-o: " + options.output + " is an input, which would be lost; choose another name");
-  }
-}
 
 /// Everything that can be refused is refused here, before the work.
 Scene checked_scene(const BakeOptions& options) {
@@ -33,9 +20,7 @@ Scene checked_scene(const BakeOptions& options) {
     throw Error(ExitCode::output, options.output + ": a lit cloud is written as .ply; choose such a name");
   Scene scene = load_any(options.input, overrides_of(options));
   require_known_radiosity(scene);
-  refuse_input_as_output(options, scene);
-  for (const std::string& file : {options.output, options.stats_file})
-    if (!file.empty()) const AtomicFile probe(file);
+  require_outputs(options.input, scene, {{"-o", options.output}, {"--stats", options.stats_file}});
   return scene;
 }
 

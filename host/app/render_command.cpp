@@ -1,10 +1,10 @@
 #include "host/app/commands.h"
 #include "host/app/interrupt.h"
 #include "host/app/light_stages.h"
+#include "host/app/output_files.h"
 #include "host/app/prepared_scene.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
-#include "host/atomic_file.h"
 #include "host/cl/binary_cache.h"
 #include <algorithm>
 #include <cmath>
@@ -132,8 +132,8 @@ Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path") require_known_radiosity(scene);
   // Before the work, not after it.
   require_writable_picture(output_of(options));
-  for (const std::string& file : {options.stats_file, options.trace_file})
-    if (!file.empty()) const AtomicFile probe(file);
+  require_outputs(options.input, scene,
+                  {{"-o", output_of(options)}, {"--stats", options.stats_file}, {"--trace", options.trace_file}});
   return scene;
 }
 

@@ -25,7 +25,7 @@ struct LinkOptions {
   bool thesis = false; ///< one segment a pair, between the points nearest to the centroids, whatever `samples` says
   /// Each point asks one segment of each cluster that is partly hidden from it; where that is more than this, up to
   /// four neighbours share one (octree/vmap/point_shares.h). 0: one share for all points of a pair.
-  unsigned point_samples = 32;
+  unsigned point_samples = 128;
   std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
 };
 

@@ -22,6 +22,7 @@ namespace {
 struct Settings {
   float epsilon = static_cast<float>(RadiositySettings{}.epsilon);
   unsigned samples = static_cast<unsigned>(RadiositySettings{}.vmap_samples);
+  unsigned point_samples = static_cast<unsigned>(RadiositySettings{}.point_samples);
   unsigned leaf = ClusterOptions{}.leaf_capacity;
   unsigned order = static_cast<unsigned>(RadiositySettings{}.order);
   double tolerance = RadiositySettings{}.tolerance;
@@ -109,6 +110,7 @@ FmmRun run_fmm(Session& session, const test::LitRoom& room, const Settings& sett
   DeviceVisibility oracle(session, room.pools, room.variant, tree.points);
   LinkOptions options;
   options.samples = settings.samples;
+  options.point_samples = settings.point_samples;
   options.epsilon = settings.epsilon;
   const VMap map = make_links(tree, oracle, options);
   run.vmap = watch.lap();
@@ -186,8 +188,8 @@ double growth(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 void print_settings(const Settings& s) {
-  std::printf("epsilon %g, K %u, leaves of %u, order %u, tolerance %g\n", static_cast<double>(s.epsilon), s.samples,
-              s.leaf, s.order, s.tolerance);
+  std::printf("epsilon %g, K %u, %u a point, leaves of %u, order %u, tolerance %g\n", static_cast<double>(s.epsilon),
+              s.samples, s.point_samples, s.leaf, s.order, s.tolerance);
 }
 
 constexpr const char* fmm_header =
@@ -321,6 +323,7 @@ int main(int argc, char** argv) {
   app.add_option("--extrapolate-to", large, "points to extrapolate the direct solver to, 0: not");
   app.add_option("--epsilon", settings.epsilon, "radiosity.epsilon")->check(CLI::Range(0.0, 1.0));
   app.add_option("--samples", settings.samples, "radiosity.vmap_samples")->check(CLI::Range(1, 1024));
+  app.add_option("--point-samples", settings.point_samples, "radiosity.point_samples")->check(CLI::Range(0, 65536));
   app.add_option("--leaf", settings.leaf, "points of a cluster that is not divided")->check(CLI::Range(1, 4096));
   app.add_option("--order", settings.order, "radiosity.order")->check(CLI::Range(2, 6));
   app.add_option("--tolerance", settings.tolerance, "radiosity.tolerance");

@@ -86,7 +86,7 @@ TEST_CASE("bake of a scene with a mirror: its light without caustics, and the li
   CHECK(stats.count("photons") == 0);
 }
 
-TEST_CASE("bake refuses before the work what it cannot do") {
+TEST_CASE("bake and render refuse before the work what they cannot do") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene());
   const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
@@ -103,6 +103,13 @@ TEST_CASE("bake refuses before the work what it cannot do") {
       {"bake " + scene + " -o " + folder.file("x.ply") + " --size 10x10", 2, "--size"},
       {"bake " + scene + " -o " + folder.file("x.ply") + " --expsure 1", 2, "did you mean \"--exposure\""},
       {"bake " + cloud + " -o " + cloud, 2, "is an input"},
+      {"bake " + cloud + " -o " + folder.file("x.ply") + " --stats " + cloud, 2, "--stats"},
+      {"bake " + scene + " -o " + folder.file("x.ply") + " --stats " + scene, 2, "is an input"},
+      {"bake " + scene + " -o " + folder.file("x.ply") + " --stats " + folder.file("./x.ply"), 2, "-o writes, too"},
+      {"render " + scene + " -o " + folder.file("x.exr") + " --stats " + scene, 2, "is an input"},
+      {"render " + scene + " -o " + folder.file("x.exr") + " --stats " + folder.file("j") + " --trace " +
+           folder.file("j"),
+       2, "--stats writes, too"},
       {"bake " + folder.file("none.toml") + " -o " + folder.file("x.ply"), 3, "none.toml"},
       {"bake " + scene + " -o " + folder.file("x.ply") + " --device quantum", 4, "quantum"},
       {"bake " + scene + " -o " + folder.file("x.exr"), 5, ".ply"},
