@@ -20,7 +20,8 @@ Photon stored_photon(const PhotonFlight& flight) {
   Photon photon{};
   std::copy_n(flight.position, 3, photon.position);
   photon.direction = flight.direction;
-  std::copy_n(flight.power, 3, photon.power);
+  for (int c = 0; c < 3; ++c)
+    photon.power[c] = flight.power[c] * flight.seen;
   photon.splat = flight.splat;
   return photon;
 }
