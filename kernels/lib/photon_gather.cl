@@ -17,6 +17,11 @@
 /* Places in the list of candidates, whole buckets: at 50 and at 500 photons a caustic fills two thirds of it. When it is
  * full, what the bound has left behind is thrown out. */
 #define GATHER_ROOM (4 * GATHER_MOST + 256)
+/* Nor do equal distances fill it: a bound is drawn of k + GATHER_PATIENCE + 15 candidates at most. Those that tie at it may
+ * stay, but no photon at the bound becomes a candidate, and of nearer ones fewer than k + 16, or the bound would be theirs. */
+#if GATHER_ROOM < 2 * GATHER_MOST + GATHER_PATIENCE + 64
+#error "GATHER_PATIENCE: candidates that tie may fill the list"
+#endif
 
 /* Photons off a surface's plane belong to other surfaces, more likely the farther off they are: height counts four times
  * (Jensen 2001 flattens the sphere of the search likewise), squared and beside what it counts as part of the distance. */
@@ -33,9 +38,9 @@ typedef struct GatherPlace {
   float3 normal; /* unit, of the side that is lit; used by GATHER_SURFACE only */
 } GatherPlace;
 
-/* Candidates: the photons nearer than or at `within2` among the first `count`, a multiple of 16, of the list; it keeps the
- * others of their buckets too, which costs less than to sort them out one by one. The arrays stand apart, so that what is
- * counted is kept in registers. */
+/* Candidates: the photons nearer than or at `within2` among the first `count`, a multiple of 16, of the list; others of
+ * their buckets stand there infinitely far off, which costs less than to sort them out one by one. The arrays stand apart,
+ * so that what is counted is kept in registers. */
 typedef struct NearPhotons {
   float* distance2;
   uint* photon;
@@ -128,8 +133,10 @@ static inline void throw_out(NearPhotons* near) {
     near->photon[kept] = photon;
     kept += d <= near->within2 ? 1u : 0u;
   }
-  while ((kept & 15u) != 0u)
-    near->distance2[kept++] = INFINITY;
+  for (; (kept & 15u) != 0u; ++kept) {
+    near->distance2[kept] = INFINITY;
+    near->photon[kept] = 0u; /* or 16 in a row might look like a whole bucket (add_powers) */
+  }
   near->count = kept;
 }
 
@@ -163,7 +170,7 @@ static inline void add_bucket(PhotonPool pool, GatherPlace place, uint k, uint b
   const uint number = (uint)popcount(byte_a_lane(found.lo) | (byte_a_lane(found.hi) << 1));
   if (number == 0u)
     return;
-  vstore16(d2, 0, near->distance2 + near->count);
+  vstore16(found ? d2 : (float16)(INFINITY), 0, near->distance2 + near->count);
   vstore16(bucket * PHOTON_LANES + PHOTON_LANE_NUMBERS, 0, near->photon + near->count);
   near->count += PHOTON_LANES;
   near->fresh += number;
