@@ -1,5 +1,6 @@
 #include "tests/support/render.h"
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -75,4 +76,24 @@ TEST_CASE("photons from a lamp in glass to a surface in the same glass keep thei
   CAPTURE(c.photons, c.paths);
   CHECK(c.photons > 0.001);
   CHECK(c.photons == Approx(c.paths).epsilon(0.05));
+}
+
+TEST_CASE("the back of glass is no black back to either integrator") {
+  // The camera stands in the ball: every ray meets glass from within, some of them first the disc, from its front.
+  const std::string scene =
+      "version = 1\n[render]\nsize = [16, 16]\nspp = 4\n[camera]\nposition = [0.0, 0.3, 0.0]\n"
+      "look_at = [0.0, 0.0, -0.3]\nfov_deg = 60.0\n[environment]\nradiance = [1.0, 1.0, 1.0]\n"
+      "[[material]]\nname = \"glass\"\ntype = \"glass\"\nior = 1.5\n"
+      "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.8, 0.8, 0.8]\n"
+      "[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.5\nmaterial = \"glass\"\nspacing = 0.05\n" +
+      disc("0.0, 0.0, 0.0", "0.0, 1.0, 0.0", "0.2", "white");
+  for (const char* integrator : {"pointgi", "path"}) {
+    const TemporaryFolder folder;
+    render_text(scene, [&](RenderOptions& options) {
+      options.integrator = integrator;
+      options.stats_file = folder.file("stats.json");
+    });
+    std::ifstream file(folder.file("stats.json"));
+    CHECK(nlohmann::json::parse(file)["render"]["back_face_share"] == 0.0);
+  }
 }
