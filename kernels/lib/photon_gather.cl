@@ -73,52 +73,53 @@ static inline float largest16(float16 v) {
   return max(max(b.x, b.y), max(b.z, b.w));
 }
 
-/* How many distances are at most `bound`, which is not above within2. */
-static inline uint count_within(const NearPhotons* near, float bound) {
-  int16 count = 0;
-  for (uint i = 0u; i < near->count; i += 16u)
-    count += vload16(0, near->distance2 + i) <= bound;
-  return (uint)-sum16(count);
-}
+static inline float smallest16(float16 v) { return smallest8(min(v.lo, v.hi)); }
 
-/* The largest distance that is at most `bound`. */
-static inline float largest_within(const NearPhotons* near, float bound) {
-  float16 largest = 0.0f;
+/* The list cut at a bound. */
+typedef struct Cut {
+  uint count;    /* distances at most the bound */
+  float largest; /* of them, or 0 */
+  float above;   /* the smallest of the others, or INFINITY */
+} Cut;
+
+static inline Cut cut_at(const NearPhotons* near, float bound) {
+  int16 count = 0;
+  float16 largest = 0.0f, above = INFINITY;
   for (uint i = 0u; i < near->count; i += 16u) {
     const float16 d = vload16(0, near->distance2 + i);
-    largest = max(largest, d <= bound ? d : 0.0f);
+    const int16 within = d <= bound;
+    count += within;
+    largest = max(largest, within ? d : (float16)(0.0f));
+    above = min(above, within ? (float16)(INFINITY) : d);
   }
-  return largest16(largest);
+  const Cut cut = {(uint)-sum16(count), largest16(largest), smallest16(above)};
+  return cut;
 }
 
 /* Draws the bound closer: to the k-th smallest distance of at least k, or to one of the `slack` behind it. Over a surface
- * distances squared are spread evenly, so the place between one that is too small and one that is not is told by their
- * counts; every third step halves instead, by the bits, which are in the order of the numbers, so that it ends. */
+ * distances squared are spread evenly, so where to cut between one that may be too small and one that is not is told by
+ * their counts; every fourth cut halves instead, by the bits, which are in the order of the numbers. Each cut leaves one
+ * distance less between the two, so that it ends. */
 static inline void draw_bound(NearPhotons* near, uint k, uint slack) {
-  uint count_enough = near->within + near->fresh, count_too_small = 0u;
+  uint count_enough = near->within + near->fresh, count_below = 0u; /* distances below `least` */
   if (count_enough < k)
     return;
-  float enough = largest_within(near, near->within2), too_small = 0.0f;
-  int low = -1; /* the bits of too_small, or below all numbers */
-  for (uint step = 0u; count_enough > k + slack; ++step) {
-    const int high = as_int(enough);
-    if (high - low <= 1)
-      break;
-    const float told = too_small + (enough - too_small) * ((float)(k + slack / 2u - count_too_small) /
-                                                           (float)(count_enough - count_too_small));
-    const bool halve = step % 3u == 2u || as_int(told) <= low || as_int(told) >= high;
-    const float middle = halve ? as_float(low + (high - low) / 2) : told;
-    const uint count = count_within(near, middle);
-    if (count < k) {
-      too_small = middle;
-      low = as_int(middle);
-      count_too_small = count;
+  float enough = cut_at(near, near->within2).largest, least = 0.0f; /* the k-th is none smaller */
+  for (uint step = 1u; count_enough > k + slack && least < enough; ++step) {
+    const int low = as_int(least), high = as_int(enough);
+    const float told = least + (enough - least) * (((float)(k + slack / 2u - count_below) + 0.5f) /
+                                                   (float)(count_enough - count_below));
+    const bool halve = step % 4u == 0u || !(told < enough);
+    const Cut cut = cut_at(near, halve ? as_float(low + (high - low) / 2) : told);
+    if (cut.count < k) {
+      least = cut.above;
+      count_below = cut.count;
     } else {
-      enough = middle;
-      count_enough = count;
+      enough = cut.largest;
+      count_enough = cut.count;
     }
   }
-  near->within2 = largest_within(near, enough);
+  near->within2 = enough;
   near->within = count_enough;
   near->fresh = 0u;
 }
