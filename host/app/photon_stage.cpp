@@ -1,4 +1,5 @@
 #include "host/app/photon_stage.h"
+#include "host/app/progress.h"
 #include "host/error.h"
 #include "host/photon/diffuse_photons.h"
 #include <spdlog/spdlog.h>
@@ -20,17 +21,31 @@ std::string reason_against(const IndirectRequest& request, bool specular) {
   return {};
 }
 
+/// How many times photons fly whose memory is one.
+std::size_t flights_of(const IndirectRequest& request) {
+  return request.scene.caustics.indirect && reason_against_radiosity(request).empty() ? 2 : 1;
+}
+
 /// The stage itself, from these sources.
 void fly(Session& session, const DevicePools& pools, const IndirectRequest& request,
          const Buffer<cl_float4>& normal_field, const PhotonSources& sources, Caustics& caustics, StageLog& stages) {
   stages.start("photon");
-  TracedPhotons traced = send_photons(session, pools, request.variant, request.lighting, sources, request.points,
-                                      normal_field, request.scene.caustics, request.frame.side, request.stop);
+  TracedPhotons traced = [&] {
+    Progress progress("photon", request.quiet);
+    const FlightControl control{request.stop, [&](double share) { progress.update(share); },
+                                most_stored_photons / flights_of(request)};
+    return send_photons(session, pools, request.variant, request.lighting, sources, request.points, normal_field,
+                        request.scene.caustics, request.frame.side, control);
+  }();
   if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
   const PhotonLedger& ledger = traced.ledger;
   stages.finish(ledger.aimed, "photons", ledger.device_seconds);
   spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
                ledger.emitted, ledger.stored, ledger.absorbed, ledger.escaped, ledger.cut);
+  if (traced.one_of > 1)
+    spdlog::warn(
+        "caustics: one photon of {} is kept, with {} times its power, as there are more than memory is kept for",
+        traced.one_of, traced.one_of);
   if (caustics.photons.empty())
     caustics.photons = std::move(traced.stored);
   else

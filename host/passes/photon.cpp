@@ -1,6 +1,6 @@
 #include "host/passes/photon.h"
-#include "host/error.h"
 #include "host/passes/visibility.h"
+#include "host/photon/kept_photons.h"
 #include <algorithm>
 
 namespace pointgi {
@@ -20,14 +20,14 @@ Photon stored_photon(const PhotonFlight& flight) {
   Photon photon{};
   std::copy_n(flight.position, 3, photon.position);
   photon.direction = flight.direction;
-  std::copy_n(flight.power, 3, photon.power);
+  for (int c = 0; c < 3; ++c)
+    photon.power[c] = flight.power[c] * flight.seen;
   photon.splat = flight.splat;
   return photon;
 }
 
 /// Enters a photon that has ended.
-void book(const PhotonFlight& flight, TracedPhotons& traced) {
-  PhotonLedger& ledger = traced.ledger;
+void book(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger, KeptPhotons& kept) {
   ++ledger.aimed;
   if (flight.end == PHOTON_ASIDE) return;
   ++ledger.emitted;
@@ -37,7 +37,7 @@ void book(const PhotonFlight& flight, TracedPhotons& traced) {
   case PHOTON_STORED:
     ++ledger.stored;
     add(flight.power, ledger.stored_power);
-    traced.stored.push_back(stored_photon(flight));
+    kept.add(stored_photon(flight), number);
     break;
   case PHOTON_ABSORBED:
     ++ledger.absorbed;
@@ -75,7 +75,7 @@ void add(const PhotonLedger& ledger, PhotonLedger& to) {
 }
 
 TracedPhotons trace_photons(Session& session, const DevicePools& pools, const PhotonRequest& request,
-                            const std::function<bool()>& stop) {
+                            const FlightControl& control) {
   TracedPhotons traced;
   if (request.plan.photons == 0) return traced;
   const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.equal_power);
@@ -98,8 +98,9 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   std::size_t batch = std::min(photons, request.batch > 0 ? request.batch : first_batch);
   const std::size_t room = std::min(photons, request.batch > 0 ? request.batch : most_at_once);
   const auto flights = session.allocate<PhotonFlight>(room);
+  KeptPhotons kept(control.most_stored, photons, request.lighting.params.seed);
   for (std::size_t first = 0; first < photons;) {
-    if (stop()) {
+    if (control.stop()) {
       traced.stopped = true;
       return traced;
     }
@@ -109,17 +110,17 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
         device_params, materials, delta, emitters, radiance, aims, leaves, splats, leaf_of, flights,
         static_cast<cl_uint>(request.plan.aims.size()), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     traced.ledger.device_seconds += seconds;
+    auto number = static_cast<std::uint32_t>(first);
     for (const PhotonFlight& flight : session.download(flights, count))
-      book(flight, traced);
-    if (traced.stored.size() > request.most_stored)
-      throw Error(ExitCode::memory, "caustics: more than " + std::to_string(request.most_stored) +
-                                        " photons are to be stored, as many as memory is kept for; set "
-                                        "caustics.photons lower");
+      book(flight, number++, traced.ledger, kept);
     first += count;
+    if (control.progress) control.progress(static_cast<double>(first) / static_cast<double>(photons));
     if (request.batch > 0) continue;
     if (seconds < 0.5 * launch_seconds && count == batch) batch = std::min(2 * batch, room);
     if (seconds > 2.0 * launch_seconds) batch = std::max(batch / 2, fewest);
   }
+  traced.one_of = kept.one_of();
+  traced.stored = kept.take();
   return traced;
 }
 
@@ -138,7 +139,7 @@ PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points)
 TracedPhotons send_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                            const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
                            const Buffer<cl_float4>& normal_field, const CausticSettings& settings, double side,
-                           const std::function<bool()>& stop) {
+                           const FlightControl& control) {
   const bool equal_power = settings.power == "equal";
   const std::size_t lights = sources.delta.size() + 2;
   const SpecularLeaves leaves = specular_leaves(
@@ -155,7 +156,7 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
   options.seed = lighting.params.seed;
   const EmissionPlan plan = plan_emission(leaves, points, sources, ask, options);
   return trace_photons(session, pools, {lighting, sources, leaves, plan, normal_field, variant, side, equal_power},
-                       stop);
+                       control);
 }
 
 std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,

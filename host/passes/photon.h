@@ -23,12 +23,20 @@ void add(const PhotonLedger& ledger, PhotonLedger& to);
 
 struct TracedPhotons {
   std::vector<Photon> stored; ///< in the order of their numbers
-  PhotonLedger ledger;
+  std::uint64_t one_of = 1;   ///< of so many stored photons one is kept, with so many times its power
+  PhotonLedger ledger;        ///< of all of them
   bool stopped = false;
 };
 
-/// As many photons as may be stored, 1 GiB: what is more is refused, for dropping some would darken the picture.
+/// As many photons as are kept, 1 GiB.
 constexpr std::size_t most_stored_photons = std::size_t{1} << 25;
+
+/// How a flight is watched, and bounded.
+struct FlightControl {
+  std::function<bool()> stop;                    ///< asked between launches
+  std::function<void(double)> progress;          ///< share of the photons, after every launch; may be empty
+  std::size_t most_stored = most_stored_photons; ///< at least 1; where more are stored, one of 2, 4, ... is kept
+};
 
 struct PhotonRequest {
   const DeviceLighting& lighting; ///< materials, seed, most bounces
@@ -39,13 +47,12 @@ struct PhotonRequest {
   TraversalVariant variant;
   double side = 1.0; ///< of the root cube, world units
   bool equal_power = false;
-  std::size_t batch = 0;                         ///< photons a launch; 0: found by the launches' times
-  std::size_t most_stored = most_stored_photons; ///< photons
+  std::size_t batch = 0; ///< photons a launch; 0: found by the launches' times
 };
 
-/// Throws Error(device), or Error(memory) when too many photons are stored. `stop` is asked between launches.
+/// The same photons, and of too many the same ones kept, however they are cut into launches. Throws Error(device).
 TracedPhotons trace_photons(Session& session, const DevicePools& pools, const PhotonRequest& request,
-                            const std::function<bool()>& stop);
+                            const FlightControl& control);
 
 /// The lights of the scene as sources. `points`: of the pool.
 PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points);
@@ -55,7 +62,7 @@ PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points)
 TracedPhotons send_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                            const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
                            const Buffer<cl_float4>& normal_field, const CausticSettings& settings, double side,
-                           const std::function<bool()>& stop);
+                           const FlightControl& control);
 
 /// Irradiance [n float4, W/m², scaled] by the map of places on surfaces, [2 n]: position, unit normal of the lit side.
 std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,

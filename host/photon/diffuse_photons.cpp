@@ -1,4 +1,5 @@
 #include "host/photon/diffuse_photons.h"
+#include "host/scene/shares.h"
 
 namespace pointgi {
 
@@ -19,19 +20,14 @@ PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points) {
     const float* b = &radiosity[3 * p];
     return (0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2]) * points[p].area;
   };
-  double total = 0.0, sum = 0.0;
-  for (std::size_t p = 0; p < points.size; ++p)
-    total += luminous_power(p);
   constexpr float inverse_pi = 0.31830989f;
   for (std::size_t p = 0; p < points.size; ++p) {
-    const double share = luminous_power(p);
-    if (!(share > 0.0)) continue;
-    sum += share;
-    sources.emitters.push_back({static_cast<pg_uint>(p), static_cast<float>(sum / total)});
+    if (!(luminous_power(p) > 0.0)) continue;
+    sources.emitters.push_back({static_cast<pg_uint>(p), 0.0f});
     const float* b = &radiosity[3 * p];
     sources.radiance.push_back({inverse_pi * b[0], inverse_pi * b[1], inverse_pi * b[2], 0.0f});
   }
-  if (!sources.emitters.empty()) sources.emitters.back().cumulative = 1.0f;
+  accumulate_shares(sources.emitters, [&](const Emitter& emitter) { return luminous_power(emitter.point); });
   return sources;
 }
 

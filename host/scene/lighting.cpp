@@ -1,4 +1,5 @@
 #include "host/scene/lighting.h"
+#include "host/scene/shares.h"
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -42,19 +43,6 @@ DeltaLight device_light(const LightSettings& entry, const Frame& frame, double s
     copy3(directional.irradiance / scale, light.strength);
   }
   return light;
-}
-
-/// Running shares of `weights` in their sum; the last is exactly 1.
-template <typename Entries, typename Weight>
-void accumulate_shares(Entries& entries, Weight weight) {
-  double total = 0.0, sum = 0.0;
-  for (const auto& entry : entries)
-    total += weight(entry);
-  for (auto& entry : entries) {
-    sum += weight(entry);
-    entry.cumulative = static_cast<float>(sum / total);
-  }
-  if (!entries.empty()) entries.back().cumulative = 1.0f;
 }
 
 struct Axes {

@@ -17,6 +17,11 @@
 /* Places in the list of candidates, whole buckets: at 50 and at 500 photons a caustic fills two thirds of it. When it is
  * full, what the bound has left behind is thrown out. */
 #define GATHER_ROOM (4 * GATHER_MOST + 256)
+/* Nor do equal distances fill it: a bound is drawn of k + GATHER_PATIENCE + 15 candidates at most. Those that tie at it may
+ * stay, but no photon at the bound becomes a candidate, and of nearer ones fewer than k + 16, or the bound would be theirs. */
+#if GATHER_ROOM < 2 * GATHER_MOST + GATHER_PATIENCE + 64
+#error "GATHER_PATIENCE: candidates that tie may fill the list"
+#endif
 
 /* Photons off a surface's plane belong to other surfaces, more likely the farther off they are: height counts four times
  * (Jensen 2001 flattens the sphere of the search likewise), squared and beside what it counts as part of the distance. */
@@ -33,9 +38,9 @@ typedef struct GatherPlace {
   float3 normal; /* unit, of the side that is lit; used by GATHER_SURFACE only */
 } GatherPlace;
 
-/* Candidates: the photons nearer than or at `within2` among the first `count`, a multiple of 16, of the list; it keeps the
- * others of their buckets too, which costs less than to sort them out one by one. The arrays stand apart, so that what is
- * counted is kept in registers. */
+/* Candidates: the photons nearer than or at `within2` among the first `count`, a multiple of 16, of the list; others of
+ * their buckets stand there infinitely far off, which costs less than to sort them out one by one. The arrays stand apart,
+ * so that what is counted is kept in registers. */
 typedef struct NearPhotons {
   float* distance2;
   uint* photon;
@@ -68,52 +73,53 @@ static inline float largest16(float16 v) {
   return max(max(b.x, b.y), max(b.z, b.w));
 }
 
-/* How many distances are at most `bound`, which is not above within2. */
-static inline uint count_within(const NearPhotons* near, float bound) {
-  int16 count = 0;
-  for (uint i = 0u; i < near->count; i += 16u)
-    count += vload16(0, near->distance2 + i) <= bound;
-  return (uint)-sum16(count);
-}
+static inline float smallest16(float16 v) { return smallest8(min(v.lo, v.hi)); }
 
-/* The largest distance that is at most `bound`. */
-static inline float largest_within(const NearPhotons* near, float bound) {
-  float16 largest = 0.0f;
+/* The list cut at a bound. */
+typedef struct Cut {
+  uint count;    /* distances at most the bound */
+  float largest; /* of them, or 0 */
+  float above;   /* the smallest of the others, or INFINITY */
+} Cut;
+
+static inline Cut cut_at(const NearPhotons* near, float bound) {
+  int16 count = 0;
+  float16 largest = 0.0f, above = INFINITY;
   for (uint i = 0u; i < near->count; i += 16u) {
     const float16 d = vload16(0, near->distance2 + i);
-    largest = max(largest, d <= bound ? d : 0.0f);
+    const int16 within = d <= bound;
+    count += within;
+    largest = max(largest, within ? d : (float16)(0.0f));
+    above = min(above, within ? (float16)(INFINITY) : d);
   }
-  return largest16(largest);
+  const Cut cut = {(uint)-sum16(count), largest16(largest), smallest16(above)};
+  return cut;
 }
 
 /* Draws the bound closer: to the k-th smallest distance of at least k, or to one of the `slack` behind it. Over a surface
- * distances squared are spread evenly, so the place between one that is too small and one that is not is told by their
- * counts; every third step halves instead, by the bits, which are in the order of the numbers, so that it ends. */
+ * distances squared are spread evenly, so where to cut between one that may be too small and one that is not is told by
+ * their counts; every fourth cut halves instead, by the bits, which are in the order of the numbers. Each cut leaves one
+ * distance less between the two, so that it ends. */
 static inline void draw_bound(NearPhotons* near, uint k, uint slack) {
-  uint count_enough = near->within + near->fresh, count_too_small = 0u;
+  uint count_enough = near->within + near->fresh, count_below = 0u; /* distances below `least` */
   if (count_enough < k)
     return;
-  float enough = largest_within(near, near->within2), too_small = 0.0f;
-  int low = -1; /* the bits of too_small, or below all numbers */
-  for (uint step = 0u; count_enough > k + slack; ++step) {
-    const int high = as_int(enough);
-    if (high - low <= 1)
-      break;
-    const float told = too_small + (enough - too_small) * ((float)(k + slack / 2u - count_too_small) /
-                                                           (float)(count_enough - count_too_small));
-    const bool halve = step % 3u == 2u || as_int(told) <= low || as_int(told) >= high;
-    const float middle = halve ? as_float(low + (high - low) / 2) : told;
-    const uint count = count_within(near, middle);
-    if (count < k) {
-      too_small = middle;
-      low = as_int(middle);
-      count_too_small = count;
+  float enough = cut_at(near, near->within2).largest, least = 0.0f; /* the k-th is none smaller */
+  for (uint step = 1u; count_enough > k + slack && least < enough; ++step) {
+    const int low = as_int(least), high = as_int(enough);
+    const float told = least + (enough - least) * (((float)(k + slack / 2u - count_below) + 0.5f) /
+                                                   (float)(count_enough - count_below));
+    const bool halve = step % 4u == 0u || !(told < enough);
+    const Cut cut = cut_at(near, halve ? as_float(low + (high - low) / 2) : told);
+    if (cut.count < k) {
+      least = cut.above;
+      count_below = cut.count;
     } else {
-      enough = middle;
-      count_enough = count;
+      enough = cut.largest;
+      count_enough = cut.count;
     }
   }
-  near->within2 = largest_within(near, enough);
+  near->within2 = enough;
   near->within = count_enough;
   near->fresh = 0u;
 }
@@ -128,8 +134,10 @@ static inline void throw_out(NearPhotons* near) {
     near->photon[kept] = photon;
     kept += d <= near->within2 ? 1u : 0u;
   }
-  while ((kept & 15u) != 0u)
-    near->distance2[kept++] = INFINITY;
+  for (; (kept & 15u) != 0u; ++kept) {
+    near->distance2[kept] = INFINITY;
+    near->photon[kept] = 0u; /* or 16 in a row might look like a whole bucket (add_powers) */
+  }
   near->count = kept;
 }
 
@@ -163,7 +171,7 @@ static inline void add_bucket(PhotonPool pool, GatherPlace place, uint k, uint b
   const uint number = (uint)popcount(byte_a_lane(found.lo) | (byte_a_lane(found.hi) << 1));
   if (number == 0u)
     return;
-  vstore16(d2, 0, near->distance2 + near->count);
+  vstore16(found ? d2 : (float16)(INFINITY), 0, near->distance2 + near->count);
   vstore16(bucket * PHOTON_LANES + PHOTON_LANE_NUMBERS, 0, near->photon + near->count);
   near->count += PHOTON_LANES;
   near->fresh += number;

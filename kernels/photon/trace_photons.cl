@@ -78,6 +78,9 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   Media media = in_air();
   uint end = PHOTON_ASIDE, bounces = 0u, splat = NO_SPLAT;
   float rays = 0.0f;
+#ifdef HAS_GLASS
+  float set_out_in = 0.0f; /* index of what the photon set out in, when it has passed through glass: only then it is known */
+#endif
   for (; !is_dark(power); ++bounces) {
     Surface s;
     Scatter scatter;
@@ -101,10 +104,16 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     power *= beer_of(media, materials, s.t);
     position = s.position;
     splat = s.splat;
+#ifdef HAS_GLASS
+    const float here = ior_of(media, materials);
+#endif
     end = meet_surface(&s, materials, ray.direction, id, bounces, &media, &scatter, &power);
     absorbed += before - power;
     if (end != PHOTON_ENDS)
       break;
+#ifdef HAS_GLASS
+    set_out_in = scatter.through && set_out_in == 0.0f ? here : set_out_in;
+#endif
     end = PHOTON_CUT;
     if (bounces + 2u > most) /* no diffuse surface may follow */
       break;
@@ -112,6 +121,13 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     ends = scattered_ends(&s, &scatter, media);
     id.vertex += 1u;
   }
+  float seen = 1.0f;
+#ifdef HAS_GLASS
+  if (set_out_in > 0.0f) {
+    const float ratio = set_out_in / ior_of(media, materials);
+    seen = ratio * ratio;
+  }
+#endif
   __global PhotonFlight* flight = flights + item;
   store3(position, flight->position);
   flight->direction = direction_bits(ray.direction.x, 0u) | direction_bits(ray.direction.y, 10u) |
@@ -119,7 +135,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   store3(end == PHOTON_ASIDE ? (float3)(0.0f) : power, flight->power);
   flight->end = end;
   store3(emitted, flight->emitted);
-  flight->bounces = bounces;
+  flight->seen = seen;
   store3(absorbed, flight->absorbed);
   flight->splat = splat;
 }

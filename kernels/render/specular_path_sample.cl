@@ -56,7 +56,7 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
       weight *= beer_of(media, lights.materials, s.t);
       if (surfaces == 1u) {
         point = s.splat;
-        add_surface(lights.params, ray, t_start, &s, sums);
+        add_first_surface(lights, ray, t_start, &s, sums);
       }
     }
     if (by_chance && path_counts(lights.params, state))

@@ -62,6 +62,13 @@ static inline bool plays_on(SampleId id, uint bounces, float longest, float3 fac
   return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
 }
 
+/* As add_surface; the back of glass is no black one. */
+static inline void add_first_surface(Lights lights, Ray ray, float t_start, const Surface* s, float* sums) {
+  add_surface(lights.params, ray, t_start, s, sums);
+  if (!s->front && lights.materials[s->material].type == MATERIAL_GLASS)
+    sums[FILM_BACK_FACE] -= 1.0f;
+}
+
 /* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
 IN_ITS_PLACE
@@ -84,9 +91,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
       weight *= beer_of(media, lights.materials, s.t);
       if (bounces == 0u) {
         point = s.splat;
-        add_surface(lights.params, ray, t_start, &s, sums);
-        if (!s.front && material->type == MATERIAL_GLASS)
-          sums[FILM_BACK_FACE] -= 1.0f; /* no black one */
+        add_first_surface(lights, ray, t_start, &s, sums);
       }
       if (s.front && is_diffuse(material) && (bounces == 0u || bounces < most)) {
 #ifdef HAS_LIGHT

@@ -7,7 +7,7 @@
 typedef struct Photon {
   float position[3]; /* bytes 0-11: root cube */
   pg_uint direction; /* bytes 12-15: the way it flew, PHOTON_DIRECTION_BITS a component */
-  float power[3];    /* bytes 16-27 */
+  float power[3];    /* bytes 16-27: times PhotonFlight::seen */
   pg_uint splat;     /* bytes 28-31: that it was stored on */
 } Photon;
 
@@ -51,7 +51,9 @@ typedef struct PhotonFlight {
   float power[3];    /* bytes 16-27: at its end */
   pg_uint end;       /* bytes 28-31 */
   float emitted[3];  /* bytes 32-43: power when it set out */
-  pg_uint bounces;   /* bytes 44-47 */
+  float seen; /* bytes 44-47: what the eye makes of its power where it was stored: light of radiance L in glass of
+                 index n is carried as L / n^2 on the eye's way (kernels/lib/specular.cl), so (n where it set out
+                 / n here)^2 */
   float absorbed[3]; /* bytes 48-59: what its surfaces and glass took on the way, less what chance gave */
   pg_uint splat;     /* bytes 60-63: that it met last; of the pool */
 } PhotonFlight;

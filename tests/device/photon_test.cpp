@@ -1,4 +1,3 @@
-#include "host/error.h"
 #include "tests/support/photon_scene.h"
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -120,7 +119,7 @@ TEST_CASE("photons are the same to the bit however they are cut into launches, a
   const auto traced = [&](std::size_t batch, const DeviceLighting& lighting) {
     PhotonRequest request{lighting, scene.sources, leaves, plan, *scene.field, scene.variant, scene.placed.frame.side};
     request.batch = batch;
-    return trace_photons(session(), scene.pools, request, [] { return false; }).stored;
+    return trace_photons(session(), scene.pools, request, {[] { return false; }, {}}).stored;
   };
   const auto once = traced(plan.photons, scene.lighting);
   CHECK(once.size() > 100);
@@ -129,12 +128,24 @@ TEST_CASE("photons are the same to the bit however they are cut into launches, a
   DeviceLighting other = scene.lighting;
   other.params.seed = 2;
   CHECK_FALSE(same_bits(once, traced(0, other)));
+}
 
-  PhotonRequest request{scene.lighting, scene.sources, leaves, plan, *scene.field, scene.variant, 1.0};
-  request.most_stored = 100;
-  CHECK_THROWS_WITH(trace_photons(session(), scene.pools, request, [] { return false; }),
-                    Catch::Contains("caustics.photons"));
-  CHECK(trace_photons(session(), scene.pools, request, [] { return true; }).stopped);
+TEST_CASE("photons fly in bounded memory, with progress, until they are stopped") {
+  const PhotonScene scene(all_of_it);
+  const auto never = [] { return false; };
+  const TracedPhotons all = scene.send();
+  std::vector<double> shares;
+  const TracedPhotons few = scene.send({never, [&](double share) { shares.push_back(share); }, 150});
+  REQUIRE(all.stored.size() > 1000);
+  CHECK(few.ledger.stored == all.ledger.stored); // the ledger is of all
+  CHECK(few.ledger.stored_power == all.ledger.stored_power);
+  CHECK(few.one_of >= 8);
+  // Half of them until there are at most 150.
+  CHECK(few.stored.size() <= 150);
+  CHECK(few.stored.size() > 40);
+  CHECK(std::is_sorted(shares.begin(), shares.end()));
+  CHECK(shares.back() == 1.0);
+  CHECK(scene.send({[] { return true; }, {}}).stopped);
 }
 
 TEST_CASE("no photons") {

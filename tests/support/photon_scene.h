@@ -33,8 +33,11 @@ struct PhotonScene {
   View<Splat> points() const { return points_of(octree); }
 
   TracedPhotons send() const {
+    return send({[] { return false; }, {}});
+  }
+  TracedPhotons send(const FlightControl& control) const {
     return send_photons(session(), pools, variant, lighting, sources, points(), *field, scene.caustics,
-                        placed.frame.side, [] { return false; });
+                        placed.frame.side, control);
   }
 
   /// World W of the device's power.

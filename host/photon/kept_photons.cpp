@@ -1,0 +1,54 @@
+#include "host/photon/kept_photons.h"
+#include <algorithm>
+
+namespace pointgi {
+
+namespace {
+
+/// How many halvings a photon survives, at most 32: one half of all none, a quarter one, an eighth two, ...
+std::uint8_t survived_by(std::uint32_t number, std::uint32_t seed) {
+  std::uint64_t h = ((std::uint64_t{seed} << 32) + number + 1) * 0x9E3779B97F4A7C15ull;
+  h = (h ^ (h >> 29)) * 0xBF58476D1CE4E5B9ull;
+  auto bits = static_cast<std::uint32_t>(h >> 32);
+  std::uint8_t halvings = 0;
+  for (; halvings < 32 && (bits & 1u) == 0; bits >>= 1)
+    ++halvings;
+  return halvings;
+}
+
+} // namespace
+
+KeptPhotons::KeptPhotons(std::size_t most, std::size_t expected, std::uint32_t seed) : most_(most), seed_(seed) {
+  photons_.reserve(std::min(most + 1, expected));
+  survives_.reserve(std::min(most + 1, expected));
+}
+
+void KeptPhotons::add(const Photon& photon, std::uint32_t number) {
+  const std::uint8_t survives = survived_by(number, seed_);
+  if (survives < halvings_) return;
+  photons_.push_back(photon);
+  survives_.push_back(survives);
+  while (photons_.size() > most_)
+    halve();
+}
+
+void KeptPhotons::halve() {
+  ++halvings_;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < photons_.size(); ++i)
+    if (survives_[i] >= halvings_) {
+      photons_[kept] = photons_[i];
+      survives_[kept++] = survives_[i];
+    }
+  photons_.resize(kept);
+  survives_.resize(kept);
+}
+
+std::vector<Photon> KeptPhotons::take() {
+  for (Photon& photon : photons_)
+    for (float& power : photon.power)
+      power *= static_cast<float>(one_of());
+  return std::move(photons_);
+}
+
+} // namespace pointgi
