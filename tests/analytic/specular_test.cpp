@@ -276,11 +276,10 @@ TEST_CASE("the picture of a room with mirror, glass and a glossy floor is the pa
         (room.mirror ? sphere("-0.4, 0.45, -0.2", 0.35, "mirror", 0.06) : "") +
         (room.glass ? sphere("0.4, 0.35, 0.3", 0.3, "glass", 0.06) : "") +
         "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 1.95, 0.0]\nnormal = [0.0, -1.0, 0.0]\nradius = 0.3\n"
-        "spacing = 0.05\nmaterial = \"lamp\"\n[radiosity]\n[caustics]\nphotons = 200000\n";
+        "spacing = 0.015\nmaterial = \"lamp\"\n[radiosity]\n[caustics]\nphotons = 200000\n";
     const Picture picture = render_text(scene);
     check_sum_of_channels(picture);
     CHECK(largest(picture, "Diffuse.G") > 0.0);
-    CHECK(largest(picture, "Caustic.G") > 0.0);
     // LD+, seen directly or by way of specular surfaces, and caustics: not what these or mirrors pass on once more. 3
     // %: 1 % of it radiosity's own error (radiosity_test.cpp), 1 % noise of the path tracer.
     const Picture truth = trace(scene, "LD*S*E,LS+DS*E", 256);
@@ -291,5 +290,8 @@ TEST_CASE("the picture of a room with mirror, glass and a glossy floor is the pa
     }
     const Picture without = trace(scene, "LD*S*E", 256);
     CHECK(mean(picture, "Diffuse.G") == Approx(mean(without, "Diffuse.G")).epsilon(0.03));
+    // A few hundredths of the light, so looked at apart. 5 %: noise of paths that find them by chance 2 %; the lamp's
+    // discs are small, for these paths meet rims that stick out of the lamp (of 0.05: 4 %), and no photon leaves there.
+    CHECK(mean(picture, "Caustic.G") == Approx(mean(trace(scene, "LS+DE", 1024), "G")).epsilon(0.05));
   }
 }
