@@ -280,8 +280,8 @@ TEST_CASE("the picture of a room with mirror, glass and a glossy floor is the pa
     const Picture picture = render_text(scene);
     check_sum_of_channels(picture);
     CHECK(largest(picture, "Diffuse.G") > 0.0);
-    // LD+, seen directly or by way of specular surfaces, and caustics: not what these or mirrors pass on once more. 3
-    // %: 1 % of it radiosity's own error (radiosity_test.cpp), 1 % noise of the path tracer.
+    // LD+, seen directly or by way of specular surfaces, and caustics: not what these or mirrors pass on once more. Of
+    // 3 %, 1 % is radiosity's own error (radiosity_test.cpp) and 1 % the noise of the path tracer.
     const Picture truth = trace(scene, "LD*S*E,LS+DS*E", 256);
     check_sum_of_channels(truth);
     for (const char* channel : {"R", "G", "B", "Direct.G", "Specular.G"}) {
