@@ -320,7 +320,8 @@ void print_region(const std::string& name, const Pictures& pictures, const Refer
   if (count == 0) return;
   std::printf("%-24s %7.1f %% %+9.2f %% %8.1f %% %8.1f %%\n", name.c_str(),
               100.0 * static_cast<double>(count) / static_cast<double>(ours.size()),
-              100.0 * (mean_ours / mean_truth - 1.0), 100.0 * error_ours / all_ours, 100.0 * error_path / all_path);
+              mean_truth > 0.0 ? 100.0 * (mean_ours / mean_truth - 1.0) : 0.0, 100.0 * error_ours / all_ours,
+              100.0 * error_path / all_path);
 }
 
 void print_regions(const Bench& bench, const Pictures& pictures, const Reference& reference) {
@@ -386,6 +387,7 @@ int main(int argc, char** argv) {
   app.add_option("--set", overrides, "key.path=value of the scene, instead of caustics.feedback and .indirect = true");
   app.add_option("--output", folder, "folder that keeps the last pictures");
   CLI11_PARSE(app, argc, argv);
+  spdlog::set_level(spdlog::level::warn);
   try {
     const test::TemporaryFolder temporary;
     const Scene own = load_any(file, overrides);
