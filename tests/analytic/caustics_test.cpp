@@ -1,3 +1,4 @@
+#include "tests/support/number.h"
 #include "tests/support/photon_scene.h"
 #include "tests/support/render.h"
 #include <catch2/catch.hpp>
@@ -8,10 +9,6 @@ using namespace pointgi::test;
 namespace {
 
 constexpr double pi = 3.14159265358979;
-
-std::string number(double x) {
-  return std::to_string(x);
-}
 
 const std::string materials = "[[material]]\nname = \"glass\"\ntype = \"glass\"\nior = 1.5\n"
                               "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\n"

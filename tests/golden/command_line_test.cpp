@@ -2,8 +2,8 @@
 #include "host/image/picture_writer.h"
 #include "tests/support/run_program.h"
 #include "tests/support/scans.h"
+#include "tests/support/stats_file.h"
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -11,27 +11,9 @@ using Catch::Contains;
 
 namespace {
 
-nlohmann::json json_of(const std::string& path) {
-  std::ifstream file(path);
-  return nlohmann::json::parse(file);
-}
-
 /// The ball by direct light alone: what its picture needs is then a list that one can write down.
 std::string direct_scene() {
   return std::string(small_scene()) + "[radiosity]\nmethod = \"none\"\n";
-}
-
-std::vector<std::string> names_of(const nlohmann::json& stages, bool ran) {
-  std::vector<std::string> names;
-  for (const auto& stage : stages)
-    if (stage["ran"] == ran) names.push_back(stage["name"]);
-  return names;
-}
-
-std::string reason_of(const nlohmann::json& stages, const std::string& name) {
-  for (const auto& stage : stages)
-    if (stage["name"] == name) return stage["reason"];
-  return "(no such stage)";
 }
 
 } // namespace

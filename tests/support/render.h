@@ -38,11 +38,30 @@ inline double mean(const Picture& picture, const std::string& channel) {
   return sum / static_cast<double>(picture.channels.at(channel).size());
 }
 
+namespace detail {
+
+/// The value that none comes before; NaN where one is, so that no comparison with a bound holds.
+template <typename Before>
+double first_of(const Picture& picture, const std::string& channel, Before before) {
+  const std::vector<float>& values = picture.channels.at(channel);
+  double first = values.at(0);
+  for (const double value : values) {
+    if (std::isnan(value)) return value;
+    if (before(value, first)) first = value;
+  }
+  return first;
+}
+
+} // namespace detail
+
+/// The largest value of a channel; NaN where one is.
 inline double largest(const Picture& picture, const std::string& channel) {
-  double most = -INFINITY;
-  for (const float value : picture.channels.at(channel))
-    most = value > most ? value : most;
-  return most;
+  return detail::first_of(picture, channel, [](double a, double b) { return a > b; });
+}
+
+/// The smallest value of a channel; NaN where one is.
+inline double smallest(const Picture& picture, const std::string& channel) {
+  return detail::first_of(picture, channel, [](double a, double b) { return a < b; });
 }
 
 } // namespace pointgi::test

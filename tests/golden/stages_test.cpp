@@ -1,0 +1,56 @@
+/// A scene runs the stages that it needs, and its kernels are built with no more (method.md §7).
+#include "host/image/picture_writer.h"
+#include "tests/support/run_program.h"
+#include "tests/support/stats_file.h"
+#include <catch2/catch.hpp>
+#include <set>
+
+using namespace pointgi;
+using namespace pointgi::test;
+using Catch::Contains;
+
+TEST_CASE("a scene without specular surfaces runs no stage and builds no kernel for them") {
+  const TemporaryFolder folder;
+  struct Found {
+    nlohmann::json stats;
+    std::string options; ///< of all programs
+    std::set<std::string> files, channels;
+  };
+  const auto render = [&](const std::string& name, const std::string& text) {
+    const std::string scene = folder.write(name + ".toml", text), out = folder.file(name);
+    const Run run = run_program("render " + scene + " --quiet -o " + out + ".exr --stats " + out + ".json" +
+                                " --dump-kernels " + out);
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    Found found{json_of(out + ".json"), {}, {}, {}};
+    for (const auto& entry : std::filesystem::directory_iterator(out)) {
+      std::ifstream file(entry.path());
+      std::string first;
+      std::getline(file, first);
+      found.options += first + "\n";
+      found.files.insert(entry.path().filename().string());
+    }
+    for (const auto& [channel, values] : read_exr(out + ".exr").channels)
+      found.channels.insert(channel);
+    return found;
+  };
+  // The same words are looked for where they must be, so that none of them can be a wrong one.
+  const auto check = [](const Found& found, bool there) {
+    CHECK((reason_of(found.stats["stages"], "normals") == "no specular material") == !there);
+    CHECK((reason_of(found.stats["stages"], "photon") == "no specular material") == !there);
+    CHECK(found.stats.count("photons") == (there ? 1 : 0));
+    CHECK(found.stats["kernels"].count("trace_photons") == (there ? 1 : 0));
+    CHECK(found.files.count("photon_trace_photons.cl") == (there ? 1 : 0));
+    for (const char* option : {"HAS_SPECULAR", "HAS_CAUSTICS", "GATHER_MOST"})
+      CHECK((found.options.find(option) != std::string::npos) == there);
+    for (const char* channel : {"Specular.R", "Caustic.R"})
+      CHECK(found.channels.count(channel) == (there ? 1 : 0));
+  };
+  const std::string photons = "[caustics]\nphotons = 2000\n"; // asked for, but there is nothing to send them to
+  const Found diffuse = render("diffuse", small_scene() + photons);
+  check(diffuse, false);
+  for (const char* option : {"HAS_GLASS", "HAS_PHONG"})
+    CHECK_THAT(diffuse.options, !Contains(option));
+  CHECK_THAT(diffuse.options, Contains("HAS_RADIOSITY")); // nothing but the specular part is left out
+  check(render("mirror", mirror_scene() + photons), true);
+}
