@@ -43,9 +43,10 @@ void fly(Session& session, const DevicePools& pools, const IndirectRequest& requ
   spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
                ledger.emitted, ledger.stored, ledger.absorbed, ledger.escaped, ledger.cut);
   if (traced.one_of > 1)
-    spdlog::warn(
-        "caustics: one photon of {} is kept, with {} times its power, as there are more than memory is kept for",
-        traced.one_of, traced.one_of);
+    spdlog::warn("caustics: memory is kept for {} stored photons: one of {} stays, {} times as bright; "
+                 "caustics.photons = {} would keep all",
+                 most_stored_photons / flights_of(request), traced.one_of, traced.one_of,
+                 request.scene.caustics.photons / static_cast<long long>(traced.one_of));
   if (caustics.photons.empty())
     caustics.photons = std::move(traced.stored);
   else

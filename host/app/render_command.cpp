@@ -133,7 +133,10 @@ Scene checked_scene(const RenderOptions& options) {
   // Before the work, not after it.
   require_writable_picture(output_of(options));
   require_outputs(options.input, scene,
-                  {{"-o", output_of(options)}, {"--stats", options.stats_file}, {"--trace", options.trace_file}});
+                  {{"-o", output_of(options)},
+                   {"-o", png_path_of(output_of(options))},
+                   {"--stats", options.stats_file},
+                   {"--trace", options.trace_file}});
   return scene;
 }
 

@@ -40,6 +40,7 @@ nlohmann::json photons_json(const PhotonLedger& l, double watts) {
   return {{"aimed", l.aimed},
           {"emitted", l.emitted},
           {"stored", l.stored},
+          {"kept", l.kept},
           {"absorbed", l.absorbed},
           {"escaped", l.escaped},
           {"cut", l.cut},

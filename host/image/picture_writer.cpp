@@ -11,19 +11,6 @@ namespace pointgi {
 
 namespace {
 
-/// "out/picture.exr" -> "out/picture.png".
-std::string png_path_of(const std::string& exr_path) {
-  std::filesystem::path path(exr_path);
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  if (extension != ".exr")
-    throw Error(ExitCode::output, "\"" + exr_path +
-                                      "\": the name of the picture must end in .exr (a .png is written beside it); "
-                                      "give one like out/picture.exr");
-  return path.replace_extension(".png").string();
-}
-
 void check_window(int full_width, int full_height, PixelWindow window) {
   if (full_width > 0 && full_height > 0 && 0 <= window.x0 && window.x0 < window.x1 && window.x1 <= full_width &&
       0 <= window.y0 && window.y0 < window.y1 && window.y1 <= full_height)
@@ -50,6 +37,18 @@ std::size_t index_of(const std::vector<ChannelName>& channels, const std::string
 }
 
 } // namespace
+
+std::string png_path_of(const std::string& exr_path) {
+  std::filesystem::path path(exr_path);
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (extension != ".exr")
+    throw Error(ExitCode::output, "\"" + exr_path +
+                                      "\": the name of the picture must end in .exr (a .png is written beside it); "
+                                      "give one like out/picture.exr");
+  return path.replace_extension(".png").string();
+}
 
 void require_writable_picture(const std::string& exr_path) {
   for (const std::string& path : {png_path_of(exr_path), exr_path})

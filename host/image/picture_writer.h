@@ -53,6 +53,9 @@ private:
   std::unique_ptr<Files> files_;
 };
 
+/// Where the PNG of a picture goes: "out/picture.exr" -> "out/picture.png". Throws Error(output) for another extension.
+std::string png_path_of(const std::string& exr_path);
+
 /// Throws Error(output) as PictureWriter's constructor would for a name or a place that cannot be written.
 void require_writable_picture(const std::string& exr_path);
 

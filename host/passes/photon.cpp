@@ -98,7 +98,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   std::size_t batch = std::min(photons, request.batch > 0 ? request.batch : first_batch);
   const std::size_t room = std::min(photons, request.batch > 0 ? request.batch : most_at_once);
   const auto flights = session.allocate<PhotonFlight>(room);
-  KeptPhotons kept(control.most_stored, photons, request.lighting.params.seed);
+  KeptPhotons kept(control.most_stored, request.lighting.params.seed);
   for (std::size_t first = 0; first < photons;) {
     if (control.stop()) {
       traced.stopped = true;
@@ -121,6 +121,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   }
   traced.one_of = kept.one_of();
   traced.stored = kept.take();
+  traced.ledger.kept = traced.stored.size();
   return traced;
 }
 

@@ -14,6 +14,7 @@ namespace pointgi {
 struct PhotonLedger {
   std::uint64_t aimed = 0; ///< photons traced, those that flew past their leaf among them
   std::uint64_t emitted = 0, stored = 0, absorbed = 0, escaped = 0, cut = 0;
+  std::uint64_t kept = 0; ///< of those that are stored
   std::array<double, 3> emitted_power{}, stored_power{}, absorbed_power{}, escaped_power{}, cut_power{};
   double device_seconds = 0.0;
 };

@@ -171,8 +171,11 @@ std::vector<ProgramUse> all_programs() {
     if (!usual_walk || !usual_group) continue;
     add(shade_program(v, diffuse), cpu, gpu);
     add(shade_program(v, without_shadow_rays), cpu, gpu);
-    for (const unsigned k : {64u, 512u, 1024u})
-      add(shade_program(v, {true, true, true, true, true, true, true, true, k}), cpu, false);
+    SceneFeatures caustics = everything;
+    for (const unsigned k : {64u, 512u, 1024u}) {
+      caustics.gather_k = k;
+      add(shade_program(v, caustics), cpu, false);
+    }
     add(path_program(v, {true, true, true}, true), cpu, gpu);
     add(trace_photons_program(v, lit, true), cpu, gpu);
   }

@@ -1,4 +1,5 @@
 #include "host/photon/emission_plan.h"
+#include "host/photon/mixed_bits.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -178,9 +179,7 @@ private:
 
 /// A number in [0,1) from the seed.
 double turn_of(std::uint32_t seed) {
-  std::uint64_t h = (seed + 1) * 0x9E3779B97F4A7C15ull;
-  h = (h ^ (h >> 29)) * 0xBF58476D1CE4E5B9ull;
-  return static_cast<double>((h ^ (h >> 32)) >> 11) * 0x1p-53;
+  return static_cast<double>(mixed_bits(seed) >> 11) * 0x1p-53;
 }
 
 /// `photons` in proportion to weight(pair), whole numbers that add up to it: those of all pairs laid end to end, cut at

@@ -1,5 +1,6 @@
 #include "host/photon/kept_photons.h"
-#include <algorithm>
+#include "host/photon/mixed_bits.h"
+#include <utility>
 
 namespace pointgi {
 
@@ -7,9 +8,7 @@ namespace {
 
 /// How many halvings a photon survives, at most 32: one half of all none, a quarter one, an eighth two, ...
 std::uint8_t survived_by(std::uint32_t number, std::uint32_t seed) {
-  std::uint64_t h = ((std::uint64_t{seed} << 32) + number + 1) * 0x9E3779B97F4A7C15ull;
-  h = (h ^ (h >> 29)) * 0xBF58476D1CE4E5B9ull;
-  auto bits = static_cast<std::uint32_t>(h >> 32);
+  auto bits = static_cast<std::uint32_t>(mixed_bits((std::uint64_t{seed} << 32) + number) >> 32);
   std::uint8_t halvings = 0;
   for (; halvings < 32 && (bits & 1u) == 0; bits >>= 1)
     ++halvings;
@@ -17,11 +16,6 @@ std::uint8_t survived_by(std::uint32_t number, std::uint32_t seed) {
 }
 
 } // namespace
-
-KeptPhotons::KeptPhotons(std::size_t most, std::size_t expected, std::uint32_t seed) : most_(most), seed_(seed) {
-  photons_.reserve(std::min(most + 1, expected));
-  survives_.reserve(std::min(most + 1, expected));
-}
 
 void KeptPhotons::add(const Photon& photon, std::uint32_t number) {
   const std::uint8_t survives = survived_by(number, seed_);

@@ -10,8 +10,8 @@ namespace pointgi {
 /// other gets its power: as bright on the mean. Which are kept in the end depends on which photons there were alone.
 class KeptPhotons {
 public:
-  /// `most` >= 1; memory is set aside for that many, or for `expected`, if less.
-  KeptPhotons(std::size_t most, std::size_t expected, std::uint32_t seed);
+  /// `most` >= 1.
+  KeptPhotons(std::size_t most, std::uint32_t seed) : most_(most), seed_(seed) {}
 
   /// `number`: no two photons have the same.
   void add(const Photon& photon, std::uint32_t number);

@@ -151,7 +151,7 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
       float q;
       const float t = ray_disc(ray.origin, ray.direction, centre, normal, &q);
-      if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.t_max, t, centre.w, normal))
+      if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.direction, ray.t_max, t, centre.w, normal))
         return true;
     })
   } while (walk.t_exit < ray.t_max && walk_next(POOL_ARGS, &walk));

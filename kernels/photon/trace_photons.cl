@@ -112,7 +112,9 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     if (end != PHOTON_ENDS)
       break;
 #ifdef HAS_GLASS
-    set_out_in = scatter.through && set_out_in == 0.0f ? here : set_out_in;
+    /* The power of point lights is that of the light, whatever stands about them; that of surfaces comes of a radiance. */
+    if (scatter.through && set_out_in == 0.0f)
+      set_out_in = aim->source < AIM_ENVIRONMENT ? 1.0f : here;
 #endif
     end = PHOTON_CUT;
     if (bounces + 2u > most) /* no diffuse surface may follow */

@@ -38,10 +38,13 @@ typedef struct RayPacketAnswer {
 } RayPacketAnswer;
 
 /* Overlapping discs stick out of the surface they stand for, so a ray that leaves a surface would meet its neighbours'
- * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end, in units of the
- * two discs' radii, and its disc faces the same way. A wall across, or the far side of a sheet of any thickness, blocks
- * at any distance, so corners and contacts do not leak. */
+ * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end and not high
+ * above it, in units of the two discs' radii, and its disc faces the same way. A wall across, or the far side of a
+ * sheet of any thickness, blocks at any distance, so corners and contacts do not leak; what lies parallel before a
+ * surface, a picture or a lamp, blocks where the gap is wider than one and a half of their radii (a height of 0.5, one
+ * radius, shows specks on the terraces of depth cameras). */
 #define SELF_HIT_REACH 1.5f
+#define SELF_HIT_HEIGHT 0.75f
 #define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
 /* A sheet stored as two coincident sides: the other side is the surface itself as long as it lies within rounding. */
 #define COINCIDENT 1e-5f

@@ -2,6 +2,8 @@
 #include "octree/parallel.h"
 #include "shared/traversal_types.h"
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 namespace pointgi {
 
@@ -14,9 +16,11 @@ Vector vector_of(const float v[3]) {
 }
 
 /// Whether a hit at distance t from a segment's end belongs to the surface there.
-bool belongs_to_end(const Splat& end, const Splat& hit, double t, double cosine) {
-  const double reach = SELF_HIT_REACH * (static_cast<double>(end.radius) + hit.radius);
-  return (t < reach && cosine > SELF_HIT_COSINE) || (t < COINCIDENT && cosine < -SELF_HIT_COSINE);
+bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& direction, double t, double cosine) {
+  const double across = std::abs(vector_of(end.normal).dot(direction));
+  const double reach = std::min<double>(SELF_HIT_REACH, SELF_HIT_HEIGHT / across);
+  return (t < reach * (static_cast<double>(end.radius) + hit.radius) && cosine > SELF_HIT_COSINE) ||
+         (t < COINCIDENT && cosine < -SELF_HIT_COSINE);
 }
 
 } // namespace
@@ -30,8 +34,8 @@ bool segment_blocked(View<Splat> splats, const Splat& from, const Splat& to) {
     const double t = normal.dot(offset) / normal.dot(direction);
     if (!(t > -SEGMENT_MARGIN && t < length + SEGMENT_MARGIN)) continue;
     if ((t * direction - offset).squaredNorm() > static_cast<double>(s.radius) * s.radius) continue;
-    if (!belongs_to_end(from, s, t, normal.dot(vector_of(from.normal))) &&
-        !belongs_to_end(to, s, length - t, normal.dot(vector_of(to.normal))))
+    if (!belongs_to_end(from, s, direction, t, normal.dot(vector_of(from.normal))) &&
+        !belongs_to_end(to, s, direction, length - t, normal.dot(vector_of(to.normal))))
       return true;
   }
   return false;

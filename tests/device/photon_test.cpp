@@ -1,3 +1,4 @@
+#include "tests/support/number.h"
 #include "tests/support/photon_scene.h"
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -6,10 +7,6 @@ using namespace pointgi;
 using namespace pointgi::test;
 
 namespace {
-
-std::string number(double x) {
-  return std::to_string(x);
-}
 
 /// A mirrored ball of radius 0.5 about the origin, a light of 1 W/sr at a distance of 1.5 and a floor.
 std::string ball_scene(double spacing, const std::string& caustics, const std::string& light = "") {
@@ -138,6 +135,8 @@ TEST_CASE("photons fly in bounded memory, with progress, until they are stopped"
   const TracedPhotons few = scene.send({never, [&](double share) { shares.push_back(share); }, 150});
   REQUIRE(all.stored.size() > 1000);
   CHECK(few.ledger.stored == all.ledger.stored); // the ledger is of all
+  CHECK(few.ledger.kept == few.stored.size());
+  CHECK(all.ledger.kept == all.ledger.stored);
   CHECK(few.ledger.stored_power == all.ledger.stored_power);
   CHECK(few.one_of >= 8);
   // Half of them until there are at most 150.

@@ -101,6 +101,26 @@ TEST_CASE("no segments, points in one place, and points that are not in the pool
   CHECK(ask_device(splats, points, variant, segments) == std::vector<std::uint8_t>{0, 1, 1, 0});
 }
 
+TEST_CASE("a board that hangs before a wall hides it, from one and a half radii on") {
+  for (const TraversalForm form : traversal_forms())
+    for (const float gap : {0.01f, 0.02f, 0.04f}) {
+      std::vector<Splat> splats;
+      for (int i = -4; i <= 4; ++i)
+        for (int j = -4; j <= 4; ++j)
+          for (const float z : {0.3f, 0.3f + gap})
+            splats.push_back(make_splat(0.5f + 0.015f * static_cast<float>(i), 0.5f + 0.015f * static_cast<float>(j), z,
+                                        0, 0, 1, 0.012f));
+      const Splat lamp = make_splat(0.55f, 0.45f, 0.9f, 0, 0, -1, 0.01f);
+      const std::vector<Splat> points{make_splat(0.5f, 0.5f, 0.3f, 0, 0, 1, 0.012f), lamp,
+                                      make_splat(0.5f, 0.5f, 0.3f + gap, 0, 0, 1, 0.012f)};
+      const std::vector<Segment> segments{{0, 1}, {1, 0}, {2, 1}};
+      CAPTURE(gap);
+      const std::uint8_t hidden = gap > 1.5f * 0.012f ? 1 : 0;
+      CHECK(ask_device(splats, points, plain_variant(form), segments) ==
+            std::vector<std::uint8_t>{hidden, hidden, 0}); // the board itself is in the light
+    }
+}
+
 TEST_CASE("the links carry the light that the visibility of every pair carries, better with more segments") {
   TracedRoom scene(2000);
   LinkOptions options;

@@ -110,6 +110,7 @@ TEST_CASE("bake and render refuse before the work what they cannot do") {
       {"render " + scene + " -o " + folder.file("x.exr") + " --stats " + folder.file("j") + " --trace " +
            folder.file("j"),
        2, "--stats writes, too"},
+      {"render " + scene + " -o " + folder.file("x.exr") + " --stats " + folder.file("x.png"), 2, "-o writes, too"},
       {"bake " + folder.file("none.toml") + " -o " + folder.file("x.ply"), 3, "none.toml"},
       {"bake " + scene + " -o " + folder.file("x.ply") + " --device quantum", 4, "quantum"},
       {"bake " + scene + " -o " + folder.file("x.exr"), 5, ".ply"},

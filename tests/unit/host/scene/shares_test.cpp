@@ -35,6 +35,21 @@ TEST_CASE("shares are those of the weights") {
   CHECK(shared({}).empty());
 }
 
+TEST_CASE("an entry is chosen as often as its share says, even the smallest") {
+  // Random numbers are multiples of 2^-24: a share between two of them would be chosen more or less often than it is.
+  const auto entries = shared({1.5, 0.7, 3.2, 1e7, 2.5, 1.1});
+  for (const Entry& e : entries)
+    CHECK(std::fmod(double{e.cumulative}, smallest_share) == 0.0);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    CHECK(share(entries, i) > 0.0f);
+}
+
+TEST_CASE("of very many equal entries no part is left out") {
+  const std::vector<Entry> entries = shared(std::vector<double>(20'000'000, 1.0));
+  for (std::size_t part = 1; part <= 20; ++part)
+    CHECK(entries[part * 1'000'000 - 1].cumulative == Approx(0.05 * static_cast<double>(part)).epsilon(1e-6));
+}
+
 TEST_CASE("the dimmest of millions has a share") {
   // Before, between and behind bright ones: a float near 1 cannot tell shares of 1e-12 apart.
   std::vector<double> weights;
