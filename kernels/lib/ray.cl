@@ -50,16 +50,17 @@ static inline ShadowEnds free_ends(void) {
   return ends;
 }
 
-/* How far along the ray a disc belongs to the surface at an end, in units of the two discs' radii. */
-static inline float reach_of_end(float3 end_normal, float3 direction) {
-  return fmin(SELF_HIT_REACH, SELF_HIT_HEIGHT / fabs(dot3(end_normal, direction)));
+/* By how much a steep ray's way from an end counts as longer than it is: it is as far from the surface there as a flat
+ * ray is at SELF_HIT_REACH. */
+static inline float steepness_at_end(float3 end_normal, float3 direction) {
+  return fmax(1.0f, SELF_HIT_REACH / SELF_HIT_HEIGHT * fabs(dot3(end_normal, direction)));
 }
 
 /* Whether a disc that is met `distance` from an end of a ray belongs to the surface there. */
-static inline bool belongs_to_end(float3 end_normal, float end_radius, float reach, float distance, float radius,
+static inline bool belongs_to_end(float3 end_normal, float end_radius, float steepness, float distance, float radius,
                                   float3 normal) {
   const float cosine = dot3(normal, end_normal);
-  return (distance < reach * (end_radius + radius) && cosine > SELF_HIT_COSINE) ||
+  return (steepness * distance < SELF_HIT_REACH * (end_radius + radius) && cosine > SELF_HIT_COSINE) ||
          (distance < COINCIDENT && cosine < -SELF_HIT_COSINE);
 }
 
@@ -84,15 +85,15 @@ static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t,
     along = ends.origin_back != 0u ? -along : along;
   }
 #endif
-  return belongs_to_end(ends.origin_normal, ends.origin_radius, reach_of_end(ends.origin_normal, direction), t, radius,
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
                         normal.xyz) &&
          !(along < 0.0f && t > ARRIVAL_DISTANCE * radius);
 }
 
 static inline bool belongs_to_ends(ShadowEnds ends, float3 direction, float t_max, float t, float radius,
                                    float3 normal) {
-  return belongs_to_end(ends.origin_normal, ends.origin_radius, reach_of_end(ends.origin_normal, direction), t, radius,
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
                         normal) ||
-         belongs_to_end(ends.target_normal, ends.target_radius, reach_of_end(ends.target_normal, direction), t_max - t,
+         belongs_to_end(ends.target_normal, ends.target_radius, steepness_at_end(ends.target_normal, direction), t_max - t,
                         radius, normal);
 }

@@ -196,11 +196,11 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
 }
 
 /* belongs_to_end in lanes, to the same answers. */
-static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float reach, lanes_f distance,
+static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float steepness, lanes_f distance,
                                    const BlockHits* h) {
   const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
                              fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
-  return ((distance < reach * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
+  return ((steepness * distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
          ((distance < COINCIDENT) & (cosine < -SELF_HIT_COSINE));
 }
 
@@ -208,7 +208,7 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float re
 /* belongs_to_origin in lanes. */
 static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
   const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
-  return lanes_of_end(ends.origin_normal, ends.origin_radius, reach_of_end(ends.origin_normal, direction), h->t, h) &
+  return lanes_of_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), h->t, h) &
          ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
 }
 #define LANES_OF_ORIGIN(h, met) lanes_of_origin(ends, ray.direction, h)
@@ -257,16 +257,16 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
 static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   const WideRay wide = wide_ray(ray);
-  const float origin_reach = reach_of_end(ends.origin_normal, ray.direction);
-  const float target_reach = reach_of_end(ends.target_normal, ray.direction);
+  const float at_origin = steepness_at_end(ends.origin_normal, ray.direction);
+  const float at_target = steepness_at_end(ends.target_normal, ray.direction);
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = hit_block(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
       if (any_lane(hit) &&
-          any_lane(hit & ~lanes_of_end(ends.origin_normal, ends.origin_radius, origin_reach, h.t, &h) &
-                   ~lanes_of_end(ends.target_normal, ends.target_radius, target_reach, ray.t_max - h.t, &h)))
+          any_lane(hit & ~lanes_of_end(ends.origin_normal, ends.origin_radius, at_origin, h.t, &h) &
+                   ~lanes_of_end(ends.target_normal, ends.target_radius, at_target, ray.t_max - h.t, &h)))
         return true;
     })
   }

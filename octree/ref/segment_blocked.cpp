@@ -18,9 +18,9 @@ Vector vector_of(const float v[3]) {
 /// Whether a hit at distance t from a segment's end belongs to the surface there.
 bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& direction, double t, double cosine) {
   const double across = std::abs(vector_of(end.normal).dot(direction));
-  const double reach = std::min<double>(SELF_HIT_REACH, SELF_HIT_HEIGHT / across);
-  return (t < reach * (static_cast<double>(end.radius) + hit.radius) && cosine > SELF_HIT_COSINE) ||
-         (t < COINCIDENT && cosine < -SELF_HIT_COSINE);
+  const double steepness = std::max(1.0, SELF_HIT_REACH / SELF_HIT_HEIGHT * across);
+  const double reach = SELF_HIT_REACH * (static_cast<double>(end.radius) + hit.radius);
+  return (steepness * t < reach && cosine > SELF_HIT_COSINE) || (t < COINCIDENT && cosine < -SELF_HIT_COSINE);
 }
 
 } // namespace
