@@ -47,7 +47,7 @@ MaterialSettings load_material(TableReader table, std::vector<std::string>& warn
   if (const auto space = table.choice("colour_space", {"srgb", "linear"})) {
     material.colour_space = *space == "srgb" ? ColourSpace::srgb : ColourSpace::linear;
     if (material.albedo)
-      warnings.push_back(table.place("colour_space").text() + ": material " + quoted(material.name) +
+      warnings.push_back(table.place("colour_space").text() + ": material " + pointgi::quoted(material.name) +
                          ": colour_space has no effect: it is that of the points' colours, but this material has an "
                          "albedo of its own, which is linear RGB; remove one of the two.");
   }
