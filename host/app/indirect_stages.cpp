@@ -13,6 +13,8 @@ namespace {
 /// Estimates of the direct light of each point. Lights that are points or far away need one, since nothing of them is
 /// chosen at random while they are few; what other estimates scatter, the many senders of a receiver average out.
 constexpr unsigned light_samples = 16, sure_lights = 4;
+/// Of light that enters besides, however little.
+constexpr double coarsest_tolerance = 0.1;
 
 unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
   const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
@@ -62,15 +64,24 @@ std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat>
   return emitted;
 }
 
-std::vector<float> reflected_radiosity(const IndirectRequest& request, const IndirectLight& light) {
+std::vector<float> reflected_radiosity(const IndirectRequest& request, const std::vector<View<float>>& irradiances) {
   std::vector<float> reflected(3 * request.points.size);
   for (std::size_t i = 0; i < reflected.size(); ++i) {
     const Splat& s = request.points[i / 3];
     if (!exchanges_light(request.scene.materials[static_cast<std::size_t>(s.material)])) continue;
-    const float caustic = request.caustic.size > 0 ? request.caustic[i] : 0.0f;
-    reflected[i] = s.colour[i % 3] * (light.direct[i] + caustic + light.from_surfaces[i]);
+    float irradiance = 0.0f;
+    for (const View<float>& one : irradiances)
+      if (one.size > 0) irradiance += one[i];
+    reflected[i] = s.colour[i % 3] * irradiance;
   }
   return reflected;
+}
+
+double power_of(View<float> radiosity, View<Splat> points) {
+  double power = 0.0;
+  for (std::size_t i = 0; i < radiosity.size; ++i)
+    power += double{radiosity[i]} * points[i / 3].area;
+  return power;
 }
 
 bool direct_light_by_radiosity(const Scene& scene) {
@@ -154,24 +165,39 @@ std::vector<float> direct_light(Session& session, const DevicePools& pools, cons
       3 * points);
 }
 
-/// By the links of `map`, or where there is none by a ray a pair.
+ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging) {
+  return {pools, request.variant, request.points, exchanging, request.frame.side, request.scene.render.seed};
+}
+
+/// By the links of the light's map, or where there is none by a ray a pair.
+RadiosityField solve(Session& session, const ExchangeScene& exchange, const IndirectLight& light,
+                     const EnteringLight& entering, const RadiositySettings& settings, const WorkReport& report) {
+  return light.map ? solve_radiosity_field(session, *light.map, entering, settings, report)
+                   : solve_radiosity_directly(session, exchange, entering, settings, report);
+}
+
 RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
-                       const RadiosityMap* map, std::vector<float>& direct, StageLog& stages) {
+                       IndirectLight& light, StageLog& stages) {
   stages.start("fmm");
   StageWatch watch(session, "fmm", request);
-  const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
-  direct = direct_light(session, exchange.pools, request, !emitters_exchange);
+  light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
-  std::vector<float> entering = direct;
+  std::vector<float> entering = light.direct;
   for (std::size_t i = 0; i < request.caustic.size; ++i)
     entering[i] += request.caustic[i];
-  const EnteringLight light{entering, emitted};
-  RadiosityField field = map != nullptr ? solve_radiosity_field(session, *map, light, settings, watch.report())
-                                        : solve_radiosity_directly(session, exchange, light, settings, watch.report());
+  RadiosityField field = solve(session, exchange, light, {entering, emitted}, request.scene.radiosity, watch.report());
   stages.finish(request.points.size, "points");
   return field;
+}
+
+void report_solution(const IndirectLight& light, const Solution& solution) {
+  spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}",
+               light.map ? std::to_string(light.map->vmap.links.size()) + " links" : "a ray a pair", solution.applies,
+               solution.residual);
+  if (const std::string complaint = complaint_of(solution); !complaint.empty())
+    spdlog::warn("radiosity: {}", complaint);
 }
 
 } // namespace
@@ -193,27 +219,38 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     stages.skip("fmm", reason);
     return light;
   }
-  const std::vector<std::uint8_t> exchanges = exchanging_materials(request.scene);
-  const ExchangeScene exchange{pools,     request.variant,    request.points,
-                               exchanges, request.frame.side, request.scene.render.seed};
-  const bool directly = settings.method == "direct";
-  RadiosityMap map;
-  if (directly)
+  const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
+  const ExchangeScene exchange = exchange_scene(pools, request, exchanging);
+  if (settings.method == "direct") {
     stages.skip("vmap", "radiosity.method = \"direct\" traces a ray for every pair of points");
-  else
-    map = run_vmap(session, exchange, request, stages);
-  light.links = map.vmap.statistics;
-  RadiosityField field = run_fmm(session, exchange, request, directly ? nullptr : &map, light.direct, stages);
+  } else {
+    light.map = run_vmap(session, exchange, request, stages);
+    light.links = light.map->vmap.statistics;
+  }
+  RadiosityField field = run_fmm(session, exchange, request, light, stages);
   light.counts = field.counts;
   light.rays = field.rays;
   light.from_surfaces = std::move(field.irradiance);
   light.solution = std::move(field.solution);
-  spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}",
-               directly ? "a ray a pair" : std::to_string(map.vmap.links.size()) + " links", light.solution.applies,
-               light.solution.residual);
-  if (const std::string complaint = complaint_of(light.solution); !complaint.empty())
-    spdlog::warn("radiosity: {}", complaint);
+  report_solution(light, light.solution);
   return light;
+}
+
+std::vector<float> add_exchange(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                View<float> entering, double share, IndirectLight& light, StageLog& stages) {
+  stages.start("fmm");
+  StageWatch watch(session, "fmm", request);
+  const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
+  RadiositySettings settings = request.scene.radiosity;
+  settings.tolerance = std::min(settings.tolerance / share, coarsest_tolerance);
+  RadiosityField field =
+      solve(session, exchange_scene(pools, request, exchanging), light, {entering, {}}, settings, watch.report());
+  for (std::size_t i = 0; i < light.from_surfaces.size(); ++i)
+    light.from_surfaces[i] += field.irradiance[i];
+  light.solution.applies += field.solution.applies;
+  stages.finish(request.points.size, "points");
+  report_solution(light, field.solution);
+  return std::move(field.irradiance);
 }
 
 } // namespace pointgi

@@ -4,6 +4,7 @@
 #include "host/passes/radiosity.h"
 #include "host/scene/frame.h"
 #include <functional>
+#include <optional>
 
 namespace pointgi {
 
@@ -15,7 +16,8 @@ struct IndirectLight {
   LinkStatistics links;
   ExchangeCounts counts;
   Solution solution;
-  std::uint64_t rays = 0; ///< that decided which points see each other
+  std::uint64_t rays = 0;          ///< that decided which points see each other
+  std::optional<RadiosityMap> map; ///< by which it is solved; absent: directly
 };
 
 /// The scene as the stages before have left it.
@@ -37,6 +39,12 @@ struct IndirectRequest {
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 
+/// The stage `fmm` once more, for light that enters besides: what surfaces make of `entering` ([points x 3] as
+/// IndirectLight, irradiance) is added to `light`, of which run_indirect_stages has found the rest, and returned.
+/// `share`, of its power in what entered first, tells how accurate it has to be. Throws as run_indirect_stages.
+std::vector<float> add_exchange(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                View<float> entering, double share, IndirectLight& light, StageLog& stages);
+
 /// Whether direct light comes with the points' irradiance, as coarse as its splats (the thesis' way, method.md §6).
 bool direct_light_by_radiosity(const Scene& scene);
 
@@ -46,9 +54,12 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
 /// IndirectLight::direct where no stage of these has found it, because no surface sends any light to another.
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request);
 
-/// rho (H_direct + H_caustic + H(B)): what each point reflects to all sides, [points x 3] as IndirectLight; 0 of points
-/// that do not exchange light. `light`: of these stages, which have run.
-std::vector<float> reflected_radiosity(const IndirectRequest& request, const IndirectLight& light);
+/// rho times the sum of irradiances: what each point reflects to all sides, [points x 3] as IndirectLight; 0 of points
+/// that do not exchange light. Irradiances: [points x 3] each, or empty for none.
+std::vector<float> reflected_radiosity(const IndirectRequest& request, const std::vector<View<float>>& irradiances);
+
+/// Power that leaves the points by their radiosity [points x 3], all colours.
+double power_of(View<float> radiosity, View<Splat> points);
 
 /// pi L_e: radiosity that each point shines with, [points x 3] as IndirectLight.
 std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points);

@@ -2,6 +2,7 @@
 #include "host/app/progress.h"
 #include "host/error.h"
 #include "host/photon/diffuse_photons.h"
+#include <cmath>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -21,21 +22,23 @@ std::string reason_against(const IndirectRequest& request, bool specular) {
   return {};
 }
 
-/// How many times photons fly whose memory is one.
-std::size_t flights_of(const IndirectRequest& request) {
-  return request.scene.caustics.indirect && reason_against_radiosity(request).empty() ? 2 : 1;
+/// Photons that a flight may add to those that are there: where others may follow, half of what memory is left for.
+std::size_t room_for(const IndirectRequest& request, const Caustics& caustics) {
+  const bool others = request.scene.caustics.indirect && reason_against_radiosity(request).empty();
+  return (most_stored_photons - caustics.photons.size()) / (others ? 2 : 1);
 }
 
 /// The stage itself, from these sources.
 void fly(Session& session, const DevicePools& pools, const IndirectRequest& request,
-         const Buffer<cl_float4>& normal_field, const PhotonSources& sources, Caustics& caustics, StageLog& stages) {
+         const Buffer<cl_float4>& normal_field, const PhotonSources& sources, const CausticSettings& settings,
+         Caustics& caustics, StageLog& stages) {
   stages.start("photon");
+  const std::size_t room = room_for(request, caustics);
   TracedPhotons traced = [&] {
     Progress progress("photon", request.quiet);
-    const FlightControl control{request.stop, [&](double share) { progress.update(share); },
-                                most_stored_photons / flights_of(request)};
+    const FlightControl control{request.stop, [&](double share) { progress.update(share); }, room};
     return send_photons(session, pools, request.variant, request.lighting, sources, request.points, normal_field,
-                        request.scene.caustics, request.frame.side, control);
+                        settings, request.frame.side, control);
   }();
   if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
   const PhotonLedger& ledger = traced.ledger;
@@ -45,8 +48,7 @@ void fly(Session& session, const DevicePools& pools, const IndirectRequest& requ
   if (traced.one_of > 1)
     spdlog::warn("caustics: memory is kept for {} stored photons: one of {} stays, {} times as bright; "
                  "caustics.photons = {} would keep all",
-                 most_stored_photons / flights_of(request), traced.one_of, traced.one_of,
-                 request.scene.caustics.photons / static_cast<long long>(traced.one_of));
+                 room, traced.one_of, traced.one_of, settings.photons / static_cast<long long>(traced.one_of));
   if (caustics.photons.empty())
     caustics.photons = std::move(traced.stored);
   else
@@ -71,15 +73,20 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
   if (const std::string exchange = reason_against_radiosity(request);
       settings.place && !exchange.empty() && (settings.feedback || settings.indirect))
     spdlog::warn("{}: [caustics] feedback and indirect have no effect: {}", settings.place->text(), exchange);
-  fly(session, pools, request, *normal_field, photon_sources(request.lighting, request.points), caustics, stages);
+  fly(session, pools, request, *normal_field, photon_sources(request.lighting, request.points), settings, caustics,
+      stages);
   return caustics;
 }
 
-void add_indirect_caustics(Session& session, const DevicePools& pools, const IndirectRequest& request,
-                           const Buffer<cl_float4>& normal_field, const IndirectLight& light, Caustics& caustics,
-                           StageLog& stages) {
-  fly(session, pools, request, normal_field, sources_of_radiosity(reflected_radiosity(request, light), request.points),
-      caustics, stages);
+std::vector<float> add_indirect_photons(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                        const Buffer<cl_float4>& normal_field, View<float> radiosity, double share,
+                                        Caustics& caustics, StageLog& stages) {
+  CausticSettings settings = request.scene.caustics;
+  settings.photons = std::llround(share * static_cast<double>(settings.photons));
+  const std::size_t before = caustics.photons.size();
+  fly(session, pools, request, normal_field, sources_of_radiosity(radiosity, request.points), settings, caustics,
+      stages);
+  return irradiance_by_photons({caustics.photons.data() + before, caustics.photons.size() - before}, request.points);
 }
 
 std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics& caustics,
