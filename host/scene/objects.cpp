@@ -35,8 +35,9 @@ ShapeWords words_of(const CylinderShape& shape) {
 SceneObject object_of(const Scene& scene, std::size_t object) {
   if (object < scene.clouds.size()) {
     const CloudSettings& cloud = scene.clouds[object];
-    return {"cloud." + std::to_string(object) + " (" + cloud.file + ")",
-            std::string("set normals = \"") + (cloud.normals == NormalSource::flip ? "auto" : "flip") + "\"",
+    const std::string name = "cloud." + std::to_string(object);
+    return {name + " (" + cloud.file + ")",
+            "--set " + name + ".normals=" + (cloud.normals == NormalSource::flip ? "auto" : "flip") + " turns it",
             cloud.material, true};
   }
   const std::size_t number = object - scene.clouds.size();

@@ -371,6 +371,7 @@ TEST_CASE("a black picture says why, and what to change") {
   const std::string backs = warnings(head + quad(0.0, "grey", false) + light, "");
   CHECK_THAT(backs, Contains("100 % of the eye rays") && Contains("shape.0 (quad, ") &&
                         Contains("swap edge_u and edge_v") && !Contains("[[cloud]]"));
+  CHECK_THAT(warnings(floor + quad(0.5, "grey", false) + light, ""), Contains("most are of shape.1 (quad, "));
   const std::string caustics = warnings(floor + light, path + " --paths LS+DE");
   CHECK_THAT(caustics, Contains("no surface of it is specular"));
   CHECK(std::count(caustics.begin(), caustics.end(), '\n') == 1);
