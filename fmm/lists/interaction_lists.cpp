@@ -1,4 +1,5 @@
 #include "fmm/lists/interaction_lists.h"
+#include "fmm/operators/cluster_flux.h"
 #include "octree/parallel.h"
 #include <algorithm>
 #include <stdexcept>
@@ -105,10 +106,12 @@ InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> link
 
 ExchangeCounts count_exchanges(const ClusterTree& tree, const InteractionLists& lists) {
   ExchangeCounts counts;
+  const FluxSides sides = flux_sides(tree);
   counts.m2l = lists.far.source.size();
   for (std::size_t k = 0; k < tree.nodes.size(); ++k) {
     const std::uint64_t receivers = tree.nodes[k].count;
-    counts.m2p += receivers * (lists.mid.begin[k + 1] - lists.mid.begin[k]);
+    for (std::uint32_t e = lists.mid.begin[k]; e < lists.mid.begin[k + 1]; ++e)
+      counts.m2p += receivers * (sides.begin[lists.mid.source[e] + 1] - sides.begin[lists.mid.source[e]]);
     for (std::uint32_t e = lists.near_.begin[k]; e < lists.near_.begin[k + 1]; ++e)
       counts.p2p += receivers * tree.nodes[lists.near_.source[e]].count;
   }

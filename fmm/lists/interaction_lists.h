@@ -22,7 +22,7 @@ struct InteractionLists {
 /// What one apply of the operator evaluates.
 struct ExchangeCounts {
   std::uint64_t m2l = 0; ///< pairs of clusters, each direction one, by expansions
-  std::uint64_t m2p = 0; ///< points with the flux vector of a cluster
+  std::uint64_t m2p = 0; ///< points with flux vectors of clusters
   std::uint64_t p2p = 0; ///< points with points
 };
 

@@ -32,13 +32,24 @@ void for_weights(const Grid& grid, const double x[3], const Use& use) {
     }
 }
 
+/// Adds to h[3] what the points behind a flux vector send to a point.
+void receive_flux(const ExchangePoint& p, const ClusterFlux& source, double visible, double* h) {
+  const Eigen::Vector3d r = source.centre - p.x;
+  const double r2 = r.squaredNorm(), facing = p.n.dot(r);
+  if (!(facing > 0.0)) return;
+  const double scale = visible * inverse_pi * facing / (r2 * r2);
+  for (int c = 0; c < 3; ++c)
+    if (source.judge[c].dot(r) < 0.0) h[c] -= scale * source.flux[c].dot(r);
+}
+
 } // namespace
 
 FmmOperator::FmmOperator(const ClusterTree& tree, View<Link> links, const FmmOptions& options,
                          View<std::uint8_t> point_shares)
     : tree_(tree), grids_(make_grids(tree, options.grid)),
       lists_(make_interaction_lists(tree, links, point_shares.size, grids_, options.lists)),
-      point_shares_(point_shares), points_(tree.points.begin(), tree.points.end()), levels_(levels_of(tree)) {
+      point_shares_(point_shares), points_(tree.points.begin(), tree.points.end()), levels_(levels_of(tree)),
+      sides_(flux_sides(tree)) {
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     if (tree.nodes[k].child_count == 0) leaves_.push_back(k);
   for (int value = 0; value < FMM_VALUES; ++value) {
@@ -136,13 +147,10 @@ void FmmOperator::evaluate_leaf(std::uint32_t leaf, View<double> radiosity, doub
     for (std::uint32_t k = leaf;; k = tree_.nodes[k].parent) {
       const std::uint32_t place = i - tree_.nodes[k].first_point;
       for (std::uint32_t entry = lists_.mid.begin[k]; entry < lists_.mid.begin[k + 1]; ++entry) {
-        const ClusterFlux& source = fluxes_[lists_.mid.source[entry]];
-        const Eigen::Vector3d r = source.centre - p.x;
-        const double r2 = r.squaredNorm(), facing = p.n.dot(r);
-        if (!(facing > 0.0)) continue;
-        const double scale = share_of(lists_.mid, entry, place) * inverse_pi * facing / (r2 * r2);
-        for (int c = 0; c < 3; ++c)
-          if (source.judge[c].dot(r) < 0.0) h[c] -= scale * source.flux[c].dot(r);
+        const double visible = share_of(lists_.mid, entry, place);
+        const std::uint32_t source = lists_.mid.source[entry];
+        for (std::uint32_t f = sides_.begin[source]; f < sides_.begin[source + 1]; ++f)
+          receive_flux(p, fluxes_[f], visible, h);
       }
       for (std::uint32_t entry = lists_.near_.begin[k]; entry < lists_.near_.begin[k + 1]; ++entry) {
         const Cluster& source = tree_.nodes[lists_.near_.source[entry]];
@@ -170,7 +178,7 @@ void FmmOperator::apply(View<double> radiosity, Judge judge, std::vector<double>
         body(clusters[k]);
     });
   };
-  update_cluster_fluxes(tree_, points_, radiosity, judge, fluxes_);
+  update_cluster_fluxes(tree_, sides_, points_, radiosity, judge, fluxes_);
   for (std::size_t level = levels_.size(); level-- > 0;)
     for_all(levels_[level], [&](std::uint32_t k) { moments_of(k, radiosity); });
   for (std::size_t level = 0; level < levels_.size(); ++level)

@@ -46,6 +46,7 @@ private:
   std::vector<std::vector<std::uint32_t>> levels_; ///< clusters of each level, the root first
   std::vector<std::uint32_t> leaves_;
   Expansion moments_, local_;
+  FluxSides sides_;
   std::vector<ClusterFlux> fluxes_;
   bool judged_ = false;
 };

@@ -6,6 +6,7 @@
 #include "host/app/prepared_scene.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
+#include "host/app/view_warnings.h"
 #include "host/cloud/input_file.h"
 #include <cstdio>
 #include <spdlog/spdlog.h>
@@ -19,7 +20,8 @@ Scene checked_scene(const BakeOptions& options) {
   if (!has_extension(options.output, ".ply"))
     throw Error(ExitCode::output, options.output + ": a lit cloud is written as .ply; choose such a name");
   Scene scene = load_any(options.input, overrides_of(options));
-  require_known_radiosity(scene);
+  apply_quality(options.quality, scene);
+  require_possible_radiosity(scene);
   require_outputs(options.input, scene, {{"-o", options.output}, {"--stats", options.stats_file}});
   return scene;
 }
@@ -47,6 +49,7 @@ ExitCode run_bake(const BakeOptions& options) {
     spdlog::warn("no light between surfaces: {}", reason_against_radiosity(request));
     light.direct = direct_light_of_points(session, ready.on_device, request);
   }
+  warn_of_unlit(scene, ready, light.direct, light.from_surfaces);
   const LitCloud lit = lit_cloud(request, light, scene.render.exposure);
   write_ply(options.output, lit.cloud, lit.columns);
   stages.finish(lit.cloud.size(), "points");

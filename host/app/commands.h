@@ -15,6 +15,7 @@ struct LightOptions {
   std::optional<double> exposure;
   std::string device;
   std::optional<unsigned> seed;
+  std::string quality = "normal";     ///< draft: four times epsilon, a quarter of a picture's samples; high: half, four
   std::vector<std::string> overrides; ///< key.path=value
   std::string stats_file;
   bool quiet = false;
@@ -23,7 +24,6 @@ struct LightOptions {
 struct RenderOptions : LightOptions {
   std::string size; ///< "WxH"
   std::optional<int> spp;
-  std::string quality = "normal";     ///< draft: a quarter of the samples, four times epsilon; high: four times, half
   std::string integrator = "pointgi"; ///< or "path": unbiased path tracing, the truth to measure others by
   std::string paths;                  ///< of the path tracer: the classes that count (host/passes/light_paths.h)
   std::string trace_file;

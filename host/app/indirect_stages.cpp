@@ -22,14 +22,6 @@ unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
   return sure ? 1 : light_samples;
 }
 
-/// Whether some splat reflects light to others.
-bool has_reflectors(const Scene& scene, View<Splat> points) {
-  return std::any_of(points.begin(), points.end(), [&](const Splat& s) {
-    return exchanges_light(scene.materials[static_cast<std::size_t>(s.material)]) &&
-           (s.colour[0] > 0.0f || s.colour[1] > 0.0f || s.colour[2] > 0.0f);
-  });
-}
-
 /// Progress of a stage, and Ctrl-C, both at every launch of the device.
 class StageWatch {
 public:
@@ -55,6 +47,20 @@ private:
 };
 
 } // namespace
+
+bool has_reflectors(const Scene& scene, View<Splat> points) {
+  return std::any_of(points.begin(), points.end(), [&](const Splat& s) {
+    return exchanges_light(scene.materials[static_cast<std::size_t>(s.material)]) &&
+           (s.colour[0] > 0.0f || s.colour[1] > 0.0f || s.colour[2] > 0.0f);
+  });
+}
+
+std::vector<std::uint8_t> exchanging_materials(const Scene& scene) {
+  std::vector<std::uint8_t> exchanges;
+  for (const MaterialSettings& material : scene.materials)
+    exchanges.push_back(exchanges_light(material) ? 1 : 0);
+  return exchanges;
+}
 
 std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points) {
   std::vector<float> emitted(3 * points.size);
@@ -98,17 +104,12 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
   return session.upload(texels);
 }
 
-void require_known_radiosity(const Scene& scene) {
-  if (!scene.radiosity.place) return;
-  const auto refuse = [&](const std::string& what) {
-    throw Error(ExitCode::input, scene.radiosity.place->text() + ": [radiosity] " + what);
-  };
-  const std::string& method = scene.radiosity.method;
-  if (method != "fmm" && method != "none" && method != "direct")
-    refuse("method = \"" + method + "\" is not in this version; it has \"fmm\", \"none\" and \"direct\"");
-  if (method == "none" && direct_light_by_radiosity(scene))
-    refuse("direct_light = \"radiosity\" wants a method that exchanges light, but method is \"none\"; choose another "
-           "method, or \"shadow_rays\"");
+void require_possible_radiosity(const Scene& scene) {
+  if (scene.radiosity.place && scene.radiosity.method == "none" && direct_light_by_radiosity(scene))
+    throw Error(ExitCode::input,
+                scene.radiosity.place->text() +
+                    ": [radiosity] direct_light = \"radiosity\" wants a method that exchanges light, but method is "
+                    "\"none\"; choose another method, or \"shadow_rays\"");
 }
 
 std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
@@ -138,13 +139,6 @@ std::string reason_against_radiosity(const IndirectRequest& request) {
 }
 
 namespace {
-
-std::vector<std::uint8_t> exchanging_materials(const Scene& scene) {
-  std::vector<std::uint8_t> exchanges;
-  for (const MaterialSettings& material : scene.materials)
-    exchanges.push_back(exchanges_light(material) ? 1 : 0);
-  return exchanges;
-}
 
 RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
                       StageLog& stages) {

@@ -34,8 +34,8 @@ struct IndirectRequest {
                               ///< on; empty: none
 };
 
-/// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws Error(input)
-/// for what this version does not have, Error(interrupted) when `stop` says so.
+/// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws
+/// Error(interrupted) when `stop` says so.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 
@@ -44,6 +44,12 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
 /// `share`, of its power in what entered first, tells how accurate it has to be. Throws as run_indirect_stages.
 std::vector<float> add_exchange(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                 View<float> entering, double share, IndirectLight& light, StageLog& stages);
+
+/// Of each material, whether its splats send and receive diffuse light.
+std::vector<std::uint8_t> exchanging_materials(const Scene& scene);
+
+/// Whether some splat reflects light diffusely.
+bool has_reflectors(const Scene& scene, View<Splat> points);
 
 /// Whether direct light comes with the points' irradiance, as coarse as its splats (the thesis' way, method.md §6).
 bool direct_light_by_radiosity(const Scene& scene);
@@ -73,7 +79,7 @@ std::string reason_against_radiosity(const IndirectRequest& request);
 std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
                                                  StageLog& stages);
 
-/// Refuses settings of [radiosity] that this version does not have, before the work. Throws Error(input).
-void require_known_radiosity(const Scene& scene);
+/// Refuses settings of [radiosity] that do not go together, before the work. Throws Error(input).
+void require_possible_radiosity(const Scene& scene);
 
 } // namespace pointgi

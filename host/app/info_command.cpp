@@ -2,9 +2,11 @@
 #include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
 #include "host/passes/tuned.h"
+#include "host/scene/objects.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace pointgi {
 
@@ -30,6 +32,37 @@ void print_report(const std::string& file, const CloudReport& report) {
     std::printf("  warning     %s\n", warning.c_str());
 }
 
+struct Bounds {
+  Vector3d low, high;
+};
+
+Bounds bounds_of(const PointCloud& cloud, std::size_t first, std::size_t end) {
+  Bounds bounds{cloud.position[first], cloud.position[first]};
+  for (std::size_t i = first; i < end; ++i) {
+    bounds.low = bounds.low.cwiseMin(cloud.position[i]);
+    bounds.high = bounds.high.cwiseMax(cloud.position[i]);
+  }
+  return bounds;
+}
+
+void print_bounds(const Bounds& b) {
+  std::printf("[%.9g, %.9g, %.9g] to [%.9g, %.9g, %.9g]\n", b.low.x(), b.low.y(), b.low.z(), b.high.x(), b.high.y(),
+              b.high.z());
+}
+
+/// Where each cloud and shape of a scene is, of the first of them: a scene may have thousands.
+void print_objects(const Scene& scene, const WorldSplats& splats) {
+  constexpr std::size_t most = 100;
+  const std::size_t objects = splats.first.size();
+  for (std::size_t i = 0; i < std::min(most, objects); ++i) {
+    const std::size_t end = i + 1 < objects ? splats.first[i + 1] : splats.cloud.size();
+    std::printf("  %s %s: %zu splats, ", i == 0 ? "objects    " : "           ", object_of(scene, i).name.c_str(),
+                end - splats.first[i]);
+    print_bounds(bounds_of(splats.cloud, splats.first[i], end));
+  }
+  if (objects > most) std::printf("              and %zu more\n", objects - most);
+}
+
 /// The value that a share of the points stays below.
 float percentile(std::vector<float> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -46,18 +79,13 @@ ExitCode run_info(const std::string& file) {
   for (std::size_t i = 0; i < scene.clouds.size(); ++i)
     print_report(scene.clouds[i].file, splats.reports[i]);
   const PointCloud& cloud = splats.cloud;
-  Vector3d low = cloud.position.front(), high = low;
-  double area = 0.0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    low = low.cwiseMin(cloud.position[i]);
-    high = high.cwiseMax(cloud.position[i]);
-    area += cloud.area[i];
-  }
+  const double area = std::accumulate(cloud.area.begin(), cloud.area.end(), 0.0);
   if (is_scene) {
     std::printf("%s\n  scene       %zu clouds, %zu shapes, %zu materials, %zu lights\n", file.c_str(),
                 scene.clouds.size(), scene.shapes.size(), scene.materials.size(), scene.lights.size());
     for (const std::string& warning : scene.warnings)
       std::printf("  warning     %s\n", warning.c_str());
+    print_objects(scene, splats);
   }
   const Frame frame = frame_of(cloud);
   const std::vector<Splat> placed = place_in_cube(splats, frame);
@@ -65,8 +93,8 @@ ExitCode run_info(const std::string& file) {
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, ideal_device(true)).variant;
   const OctreeSummary octree = summary_of(build_pools(placed, variant));
   std::printf("  splats      %zu\n", cloud.size());
-  std::printf("  bounds      [%.9g, %.9g, %.9g] to [%.9g, %.9g, %.9g]\n", low.x(), low.y(), low.z(), high.x(), high.y(),
-              high.z());
+  std::printf("  bounds      ");
+  print_bounds(bounds_of(cloud, 0, cloud.size()));
   std::printf("  area        %.6g (sum of the splats' effective areas)\n", area);
   std::printf("  spacing     %.4g (mean, square root of the mean area)\n",
               std::sqrt(area / static_cast<double>(cloud.size())));

@@ -62,7 +62,7 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
   if (settings.indirect && caustics.ledger && !light.indirect.from_surfaces.empty())
     add_rounds(session, pools, wanted, light, caustics, stages);
   light.indirect.map.reset();
-  light.photons = upload_caustics(session, caustics, request);
+  light.photons = upload_caustics(session, caustics, request, stages);
   light.ledger = caustics.ledger;
   return light;
 }

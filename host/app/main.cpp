@@ -84,12 +84,13 @@ void add_device_options(CLI::App& command, std::string& device, Common& common) 
 
 /// What render and bake share; returns the option of the output.
 CLI::Option* add_light_options(CLI::App& command, LightOptions& options, Common& common, const std::string& input,
-                               const std::string& output, const std::string& exposure) {
+                               const std::string& output, const std::string& exposure, const std::string& quality) {
   command.add_option("SCENE.toml|CLOUD.ply", options.input, input)->required();
   CLI::Option* to = command.add_option("-o,--output", options.output, output);
   command.add_option("--exposure", options.exposure, exposure);
   add_device_options(command, options.device, common);
   command.add_option("--seed", options.seed, "seed of the samples (default 1)");
+  command.add_option("--quality", options.quality, quality)->check(CLI::IsMember({"draft", "normal", "high"}));
   command
       .add_option("--set", options.overrides,
                   "a value of the scene file, e.g. camera.fov_deg=30 or cloud.0.normals=flip; may repeat")
@@ -103,15 +104,10 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
   command.add_option("--size", render.size, "image size, WIDTHxHEIGHT (default 640x480)");
   command.add_option("--spp", render.spp, "samples a pixel (default 32)")->check(CLI::Range(1, 65536));
   command
-      .add_option(
-          "--quality", render.quality,
-          "draft: a quarter of the scene's samples a pixel and four times its radiosity.epsilon; normal; high: four "
-          "times the samples, half of epsilon")
-      ->check(CLI::IsMember({"draft", "normal", "high"}));
-  command
       .add_option("--integrator", render.integrator,
                   "how light is computed: pointgi (default), or path: slow unbiased path tracing, the truth to "
-                  "measure by; ends paths by roulette, and at render.max_depth surface points where the scene says so")
+                  "measure by; ends paths by roulette, and at render.max_depth surface points where the scene says so; "
+                  "it has no channel Caustic: Diffuse holds these")
       ->check(CLI::IsMember({"pointgi", "path"}));
   command.add_option("--paths", render.paths,
                      "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
@@ -136,7 +132,9 @@ int run(int argc, char** argv) {
   CLI::App* render_command = app.add_subcommand("render", "render a scene, or a bare cloud");
   add_light_options(*render_command, render, common, "what to render",
                     "the picture, OUT.exr, and OUT.png beside it; default: the input's name, here; replaces older ones",
-                    "brightens the PNG by this many stops (default 0)");
+                    "brightens the PNG by this many stops (default 0)",
+                    "draft: a quarter of the scene's samples a pixel and four times its radiosity.epsilon; normal; "
+                    "high: four times the samples, half of epsilon");
   add_render_options(*render_command, render);
 
   BakeOptions bake;
@@ -144,7 +142,8 @@ int run(int argc, char** argv) {
       app.add_subcommand("bake", "compute the light once for all views, and write it as a point cloud");
   add_light_options(*bake_command, bake, common, "what to light",
                     "the lit cloud, LIT.ply: colours, and radiosity [W/m2] as scalar fields",
-                    "brightens the colours by this many stops (default 0); the radiosity stays as it is")
+                    "brightens the colours by this many stops (default 0); the radiosity stays as it is",
+                    "draft: four times the scene's radiosity.epsilon; normal; high: half of it")
       ->required();
 
   ProfileOptions profile;

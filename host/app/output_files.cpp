@@ -23,8 +23,12 @@ void require_outputs(const std::string& input, const Scene& scene, const std::ve
     if (output->file.empty()) continue;
     for (const std::string& in : inputs)
       if (same_file(in, output->file))
-        throw Error(ExitCode::usage, std::string(output->option) + ": " + output->file +
-                                         " is an input, which would be lost; choose another name");
+        throw Error(ExitCode::usage,
+                    output->by_default
+                        ? output->file + " would be written, but is an input, which would be lost; name another with " +
+                              output->option
+                        : std::string(output->option) + ": " + output->file +
+                              " is an input, which would be lost; choose another name");
     for (auto other = outputs.begin(); other != output; ++other)
       if (!other->file.empty() && same_file(other->file, output->file))
         throw Error(ExitCode::usage, std::string(output->option) + ": " + output->file + " is what " + other->option +

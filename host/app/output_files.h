@@ -7,8 +7,9 @@
 namespace pointgi {
 
 struct OutputFile {
-  const char* option; ///< that names it: "--stats"
-  std::string file;   ///< empty: it is not asked for
+  const char* option;      ///< that names it: "--stats"
+  std::string file;        ///< empty: it is not asked for
+  bool by_default = false; ///< the option was not given
 };
 
 /// Throws Error (usage) where a file is an input of `scene`, which is in the file `input`, or named by two options, and

@@ -90,12 +90,16 @@ std::vector<float> add_indirect_photons(Session& session, const DevicePools& poo
 }
 
 std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics& caustics,
-                                               const IndirectRequest& request) {
+                                               const IndirectRequest& request, StageLog& stages) {
   if (caustics.photons.empty()) return std::nullopt;
+  stages.start("photon");
   const CausticSettings& settings = request.scene.caustics;
   const double radius = settings.max_radius ? *settings.max_radius / request.frame.side : default_radius;
-  return upload_photon_map(session, build_photon_map(caustics.photons), static_cast<unsigned>(settings.gather_k),
-                           radius);
+  DevicePhotonMap map =
+      upload_photon_map(session, build_photon_map(caustics.photons), static_cast<unsigned>(settings.gather_k), radius);
+  store_caustics(session, request.points, exchanging_materials(request.scene), map);
+  stages.finish(request.points.size, "points");
+  return map;
 }
 
 } // namespace pointgi

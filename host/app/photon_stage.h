@@ -23,8 +23,9 @@ std::vector<float> add_indirect_photons(Session& session, const DevicePools& poo
                                         const Buffer<cl_float4>& normal_field, View<float> radiosity, double share,
                                         Caustics& caustics, StageLog& stages);
 
-/// The photons as the picture gathers them; absent where none was stored.
+/// The end of the stage: the photons as the picture gathers them, and what they bring to the points; absent where none
+/// was stored.
 std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics& caustics,
-                                               const IndirectRequest& request);
+                                               const IndirectRequest& request, StageLog& stages);
 
 } // namespace pointgi

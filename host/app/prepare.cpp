@@ -44,6 +44,7 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   PlacedSplats placed;
   placed.frame = frame_of(world.cloud);
   placed.splats = place_in_cube(world, placed.frame);
+  placed.first_ids = world.first;
   placed.id.resize(placed.splats.size());
   std::iota(placed.id.begin(), placed.id.end(), 0u);
   if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)

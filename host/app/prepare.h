@@ -16,6 +16,7 @@ struct PlacedSplats {
   Frame frame;
   std::vector<Splat> splats;
   std::vector<std::uint32_t> id; ///< of each splat: its place among the kept points of all clouds and shapes, in order
+  std::vector<std::uint32_t> first_ids; ///< id of the first point of each cloud, then of each shape
 };
 
 /// Loads, chooses a view where the scene has none (and, around a bare cloud, lights), places, merges what coincides;

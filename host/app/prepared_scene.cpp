@@ -1,5 +1,7 @@
 #include "host/app/prepared_scene.h"
 #include "host/passes/build_pools.h"
+#include <algorithm>
+#include <cmath>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -36,6 +38,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.choice = choose_for(scene, session.info());
   ready.pools = build_pools(placed.splats, ready.choice.variant);
   placed.splats = {};
+  ready.first_ids = placed.first_ids;
   for (const std::uint32_t source : source_of(ready.pools))
     ready.ids.push_back(placed.id[source]);
   ready.on_device = upload(session, ready.pools, ready.choice.variant);
@@ -49,6 +52,14 @@ std::vector<std::string> overrides_of(const LightOptions& options) {
   if (options.seed) overrides.push_back("render.seed=" + std::to_string(*options.seed));
   if (options.exposure) overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
   return overrides;
+}
+
+void apply_quality(const std::string& quality, Scene& scene, bool samples_given) {
+  if (quality == "normal") return;
+  const bool draft = quality == "draft";
+  if (!samples_given)
+    scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
+  scene.radiosity.epsilon = std::min(1.0, scene.radiosity.epsilon * (draft ? 4.0 : 0.5));
 }
 
 } // namespace pointgi

@@ -16,7 +16,8 @@ struct PreparedScene {
   VariantChoice choice;
   OctreePools pools;
   DevicePools on_device;
-  std::vector<std::uint32_t> ids; ///< of each point of the pool: its place among the kept points of the scene
+  std::vector<std::uint32_t> ids;       ///< of each point of the pool: its place among the kept points of the scene
+  std::vector<std::uint32_t> first_ids; ///< id of the first point of each cloud, then of each shape
   DeviceLighting lighting;
 };
 
@@ -26,5 +27,9 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
 
 /// The flags that every command that computes light has, as overrides of the scene file: one place checks both.
 std::vector<std::string> overrides_of(const LightOptions& options);
+
+/// --quality, a picture's noise and the exchange's error together: "draft" is a quarter of the scene's samples a pixel,
+/// unless `samples_given` with the command, and four times its radiosity.epsilon; "high" four times and half.
+void apply_quality(const std::string& quality, Scene& scene, bool samples_given = false);
 
 } // namespace pointgi

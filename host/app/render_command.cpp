@@ -5,9 +5,9 @@
 #include "host/app/prepared_scene.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
+#include "host/app/view_warnings.h"
 #include "host/cl/binary_cache.h"
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <spdlog/spdlog.h>
@@ -92,52 +92,29 @@ std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) 
   return fnv1a(std::string_view(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
 }
 
-/// What a black or empty picture most often comes from.
-void warn_of_view(const RenderTotals& totals, const Frame& frame, const Scene& scene) {
-  if (totals.eye_rays_on_splats == 0 && !totals.interrupted && totals.eye_rays > 0) {
-    const Vector3d high = frame.origin + Vector3d::Constant(frame.side), &eye = scene.camera.position;
-    spdlog::warn("no eye ray met a splat: the splats lie within [{:.4g}, {:.4g}, {:.4g}] and [{:.4g}, {:.4g}, {:.4g}], "
-                 "the camera is at [{:.4g}, {:.4g}, {:.4g}]; are the units the same, and does it look that way?",
-                 frame.origin.x(), frame.origin.y(), frame.origin.z(), high.x(), high.y(), high.z(), eye.x(), eye.y(),
-                 eye.z());
-  }
-  const double backs = totals.back_face_share();
-  if (backs > 0.5)
-    spdlog::warn(
-        "{:.0f} % of the eye rays that hit a splat met its back, which is black: the normals point the other way "
-        "(normals = \"flip\" on the [[cloud]] turns them), or the camera stands inside",
-        100.0 * backs);
-  else if (backs > 0.1)
-    spdlog::warn(
-        "{:.0f} % of the eye rays that hit a splat met its back, which is black: parts of the surface face away "
-        "from the camera; where they should not, normals = \"estimate\" may find better ones",
-        100.0 * backs);
-}
-
-/// --quality: the picture's noise and the exchange's error together.
-void apply_quality(const RenderOptions& options, Scene& scene) {
-  if (options.quality == "normal") return;
-  const bool draft = options.quality == "draft";
-  if (!options.spp)
-    scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
-  scene.radiosity.epsilon = std::min(1.0, scene.radiosity.epsilon * (draft ? 4.0 : 0.5));
-}
-
 Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path" && !options.paths.empty())
     throw Error(ExitCode::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
   Scene scene = load_any(options.input, all_overrides_of(options));
-  apply_quality(options, scene);
-  if (options.integrator != "path") require_known_radiosity(scene);
+  apply_quality(options.quality, scene, options.spp.has_value());
+  if (options.integrator != "path") require_possible_radiosity(scene);
   // Before the work, not after it.
-  require_writable_picture(output_of(options));
+  const bool unnamed = options.output.empty();
   require_outputs(options.input, scene,
-                  {{"-o", output_of(options)},
-                   {"-o", png_path_of(output_of(options))},
+                  {{"-o", output_of(options), unnamed},
+                   {"-o", png_path_of(output_of(options)), unnamed},
                    {"--stats", options.stats_file},
                    {"--trace", options.trace_file}});
   return scene;
+}
+
+/// Seconds of the device in all stages.
+double kernel_seconds(const Session& session) {
+  double seconds = 0.0;
+  for (const auto& [name, time] : session.kernel_times())
+    seconds += time.seconds;
+  return seconds;
 }
 
 /// Renders and writes the picture; false when it was interrupted before a row was finished, which leaves an older
@@ -184,11 +161,14 @@ ExitCode run_render(const RenderOptions& options) {
   const DeviceLighting& lighting = ready.lighting;
   stats.octree = summary_of(pools);
   const std::optional<LightPaths> paths = paths_of(options, scene);
+  bool told_of_black = paths && warn_of_paths(options.paths, scene, ready);
   catch_interrupts();
   const IndirectRequest wanted{variant,           scene,         ready.frame, lighting, points_of(pools),
                                paths.has_value(), options.quiet, interrupted};
   const SceneLight light = run_light_stages(session, ready.on_device, wanted, stages);
+  told_of_black = told_of_black || warn_of_unlit(scene, ready, light.indirect.direct, light.indirect.from_surfaces);
   RenderRequest request{window, lighting, ready.frame, ready.ids, variant, paths};
+  request.first_ids = ready.first_ids;
   Buffer<cl_float4> irradiance;
   if (!light.indirect.from_surfaces.empty()) {
     irradiance = upload_irradiance(session, light.indirect, scene);
@@ -203,7 +183,7 @@ ExitCode run_render(const RenderOptions& options) {
   const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)
     throw Error(ExitCode::interrupted, "interrupted before the first rows were finished; nothing was written");
-  warn_of_view(stats.render, ready.frame, scene);
+  warn_of_view(stats.render, scene, ready, told_of_black);
   if (!options.stats_file.empty()) {
     stats.command = "render";
     stats.integrator = options.integrator;
@@ -223,9 +203,9 @@ ExitCode run_render(const RenderOptions& options) {
                  window.y1 - window.y0);
     return ExitCode::interrupted;
   }
-  spdlog::info("{} splats, {:.1f} million rays, {} ({} on the device)", stats.octree.points,
+  spdlog::info("{} splats, {:.1f} million rays, {} ({} of kernels on the device)", stats.octree.points,
                1e-6 * static_cast<double>(stats.render.rays), duration_text(stages.seconds()),
-               duration_text(stats.render.device_seconds));
+               duration_text(kernel_seconds(session)));
   return ExitCode::done;
 }
 

@@ -1,5 +1,4 @@
 #include "host/image/picture_writer.h"
-#include "host/atomic_file.h"
 #include "host/error.h"
 #include "host/image/exr_writer.h"
 #include "host/image/png_writer.h"
@@ -48,11 +47,6 @@ std::string png_path_of(const std::string& exr_path) {
                                       "\": the name of the picture must end in .exr (a .png is written beside it); "
                                       "give one like out/picture.exr");
   return path.replace_extension(".png").string();
-}
-
-void require_writable_picture(const std::string& exr_path) {
-  for (const std::string& path : {png_path_of(exr_path), exr_path})
-    const AtomicFile probe(path); // made and taken away again
 }
 
 struct PictureWriter::Files {

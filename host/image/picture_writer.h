@@ -56,9 +56,6 @@ private:
 /// Where the PNG of a picture goes: "out/picture.exr" -> "out/picture.png". Throws Error(output) for another extension.
 std::string png_path_of(const std::string& exr_path);
 
-/// Throws Error(output) as PictureWriter's constructor would for a name or a place that cannot be written.
-void require_writable_picture(const std::string& exr_path);
-
 /// A whole EXR file in memory, for tests and tools: channel name -> width*height values, rows from the top of `window`.
 struct Picture {
   int width = 0, height = 0;                               ///< of `window`, which is the file's dataWindow

@@ -97,7 +97,8 @@ void DeviceFmm::make_point_jobs() {
   for (cl_uint k = 0; k < tree_.nodes.size(); ++k) {
     const Cluster& cluster = tree_.nodes[k];
     reads[k] = k == 0 ? 1.0 : reads[cluster.parent];
-    reads[k] += lists_.mid.begin[k + 1] - lists_.mid.begin[k];
+    for (cl_uint e = lists_.mid.begin[k]; e < lists_.mid.begin[k + 1]; ++e)
+      reads[k] += sides_.begin[lists_.mid.source[e] + 1] - sides_.begin[lists_.mid.source[e]];
     for (cl_uint e = lists_.near_.begin[k]; e < lists_.near_.begin[k + 1]; ++e)
       reads[k] += tree_.nodes[lists_.near_.source[e]].count;
     if (cluster.child_count != 0) continue;
@@ -115,8 +116,9 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
                      View<std::uint8_t> point_shares)
     : session_(session), tree_(tree), grids_(make_grids(tree, options.grid)),
       lists_(make_interaction_lists(tree, links, point_shares.size, grids_, options.lists)),
-      points_(tree.points.begin(), tree.points.end()), nodes_(static_cast<cl_uint>(grids_.nodes())),
-      stride_(plane_stride(points_.size())), group_(session.info().is_cpu ? 8 : 32) {
+      points_(tree.points.begin(), tree.points.end()), sides_(flux_sides(tree)),
+      nodes_(static_cast<cl_uint>(grids_.nodes())), stride_(plane_stride(points_.size())),
+      group_(session.info().is_cpu ? 8 : 32) {
   make_node_jobs();
   make_point_jobs();
   far_rows_ = upload(lists_.far);
@@ -125,6 +127,7 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
   std::vector<cl_uchar> shares(point_shares.size + FMM_LANES); // blocks read past the last point
   std::copy(point_shares.begin(), point_shares.end(), shares.begin());
   point_shares_ = session_.upload(shares);
+  flux_begin_ = session_.upload(sides_.begin);
   cluster_buffer_ = session_.upload(device_clusters(tree));
   grid_buffer_ = session_.upload(device_grids(grids_));
   std::vector<cl_float> positions;
@@ -184,7 +187,7 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
   const auto flux = session_.upload(flux_planes(radiosity, points_, stride_));
   if (judge == Judge::before && !judged_) throw std::invalid_argument("no radiosity was judged before");
   judged_ = true;
-  update_cluster_fluxes(tree_, points_, radiosity, judge, fluxes_);
+  update_cluster_fluxes(tree_, sides_, points_, radiosity, judge, fluxes_);
   std::vector<FmmFlux> cluster_planes(fluxes_.size());
   std::transform(fluxes_.begin(), fluxes_.end(), cluster_planes.begin(), device_flux);
   const auto fluxes = session_.upload(cluster_planes);
@@ -213,9 +216,9 @@ void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& 
   });
   in_pieces(read_, [&](const LaunchShape& shape, cl_uint first, cl_uint count) {
     return session_.launch(receive_points_, shape, read_.items, first, count, cluster_buffer_, point_buffer_, stride_,
-                           flux, fluxes, mid_rows_.begin, mid_rows_.source, mid_rows_.share, mid_rows_.own_share,
-                           near_rows_.begin, near_rows_.source, near_rows_.share, near_rows_.own_share, point_shares_,
-                           irradiance_);
+                           flux, fluxes, flux_begin_, mid_rows_.begin, mid_rows_.source, mid_rows_.share,
+                           mid_rows_.own_share, near_rows_.begin, near_rows_.source, near_rows_.share,
+                           near_rows_.own_share, point_shares_, irradiance_);
   });
 
   irradiance = rows_of_planes(session_.download(irradiance_, irradiance_.size), points_.size(), stride_);

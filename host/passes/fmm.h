@@ -48,6 +48,7 @@ private:
   Grids grids_;
   InteractionLists lists_;
   std::vector<ExchangePoint> points_;
+  FluxSides sides_;
   std::vector<ClusterFlux> fluxes_;
   cl_uint nodes_ = 0, stride_ = 0; ///< nodes of all grids; points padded to blocks
   std::size_t group_ = 8;
@@ -59,6 +60,7 @@ private:
   Jobs interpolate_, read_;     ///< blocks of points
   Rows far_rows_, mid_rows_, near_rows_;
   Buffer<cl_uchar> point_shares_;
+  Buffer<cl_uint> flux_begin_;
   Buffer<FmmCluster> cluster_buffer_;
   Buffer<FmmGrid> grid_buffer_;
   Buffer<cl_float> node_buffer_, point_buffer_;

@@ -155,4 +155,51 @@ LightPaths light_paths(const std::string& list, const std::optional<int>& max_de
   return paths;
 }
 
+namespace {
+
+/// Whether some path that counts goes over surfaces of the scene to a light that its last surface, or the eye, meets.
+bool some_path(const LightPaths& paths, const PathSupply& scene) {
+  const auto counts = [&](pg_uint state) { return (paths.states[state] & PATH_COUNTS) != 0; };
+  if (scene.area_lights && counts(0)) return true;
+  std::set<pg_uint> reached{0};
+  // After as many surfaces as there are states, all that can be reached have been.
+  for (pg_uint surfaces = 1; surfaces <= std::min(paths.most_bounces, pg_uint{PATH_STATES}); ++surfaces) {
+    std::set<pg_uint> next;
+    for (const pg_uint state : reached) {
+      if (scene.diffuse) next.insert(PATH_AFTER_D(paths.states[state]));
+      if (scene.specular) next.insert(PATH_AFTER_S(paths.states[state]));
+      if (scene.diffuse && counts(PATH_AFTER_D(paths.states[state]))) return true;
+      if (scene.specular && (scene.area_lights || scene.lobes) && counts(PATH_AFTER_S(paths.states[state])))
+        return true;
+    }
+    reached = next;
+  }
+  return false;
+}
+
+} // namespace
+
+std::string why_no_path(const std::string& list, const std::optional<int>& max_depth, const PathSupply& scene) {
+  const LightPaths all = light_paths(list, {}), paths = light_paths(list, max_depth);
+  if (some_path(paths, scene) || !(scene.area_lights || scene.delta_lights)) return {};
+  if (some_path(all, scene))
+    return "render.max_depth = " + std::to_string(*max_depth) +
+           " leaves out paths of more surface points; make it larger, or leave it out";
+  PathSupply more = scene;
+  more.specular = more.lobes = true;
+  if (!scene.specular && some_path(all, more))
+    return "no surface of it is specular (S); give one a material of type mirror, glass or phong, or name other "
+           "classes";
+  more = scene;
+  more.area_lights = true;
+  if (some_path(all, more))
+    return "its point and directional lights are not seen, neither by the eye nor by way of mirrors and glass; use an "
+           "emitting surface or an environment";
+  more = scene;
+  more.diffuse = true;
+  if (some_path(all, more))
+    return "no surface of it is diffuse (D) with an albedo above 0; give one such a material, or name other classes";
+  return "it lacks surfaces or lights for them; name other classes";
+}
+
 } // namespace pointgi

@@ -19,7 +19,7 @@ void add(const float power[3], std::array<double, 3>& to) {
 Photon stored_photon(const PhotonFlight& flight) {
   Photon photon{};
   std::copy_n(flight.position, 3, photon.position);
-  photon.direction = flight.direction;
+  photon.inward = flight.inward;
   for (int c = 0; c < 3; ++c)
     photon.power[c] = flight.power[c] * flight.seen;
   photon.splat = flight.splat;

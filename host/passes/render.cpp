@@ -112,6 +112,22 @@ std::vector<ChannelName> film_channels(bool indirect, bool specular, bool causti
 
 namespace {
 
+void count_for_object(const float* film, const RenderRequest& request, RenderTotals& totals) {
+  std::uint32_t point;
+  std::memcpy(&point, &film[FILM_POINT], sizeof point);
+  if (point == FILM_NO_POINT || request.first_ids.size == 0) return;
+  const auto* after = std::upper_bound(request.first_ids.begin(), request.first_ids.end(), request.point_ids[point]);
+  ObjectRays& rays = totals.of_object[static_cast<std::size_t>(after - request.first_ids.begin()) - 1];
+  rays.on_splats += static_cast<std::uint64_t>(film[FILM_COVERAGE]);
+  rays.on_backs += static_cast<std::uint64_t>(film[FILM_BACK_FACE]);
+}
+
+bool is_lit(const Band& band) {
+  return std::any_of(band.values.begin() + c_r, band.values.begin() + c_a, [](const std::vector<float>& colour) {
+    return std::any_of(colour.begin(), colour.end(), [](float value) { return value > 0.0f; });
+  });
+}
+
 /// A finished tile into its band and the totals.
 void resolve_tile(const std::vector<float>& film, std::size_t film_channels, int column, int columns,
                   const RenderRequest& request, pg_uint samples, Band& band, RenderTotals& totals) {
@@ -123,6 +139,7 @@ void resolve_tile(const std::vector<float>& film, std::size_t film_channels, int
       totals.rays += static_cast<std::uint64_t>(pixel[FILM_RAYS]);
       totals.eye_rays_on_splats += static_cast<std::uint64_t>(pixel[FILM_COVERAGE]);
       totals.eye_rays_on_back_faces += static_cast<std::uint64_t>(pixel[FILM_BACK_FACE]);
+      count_for_object(pixel, request, totals);
     }
   totals.eye_rays += static_cast<std::uint64_t>(columns) * band.rows * samples;
 }
@@ -140,6 +157,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   const PixelWindow& window = request.window;
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;
+  totals.of_object.resize(request.first_ids.size);
   int most_columns = first_columns; // grows or shrinks towards launch_seconds
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
@@ -168,6 +186,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                      : longest > 2.0 * launch_seconds ? std::max(most_columns / 2, 1)
                                                       : most_columns;
     }
+    totals.lit = totals.lit || is_lit(band);
     take(band);
     totals.rows_done = row + rows;
   }

@@ -9,14 +9,21 @@
 
 namespace pointgi {
 
+/// Eye rays at one object, as far as pixels tell: all of a pixel's go to what its first sample met.
+struct ObjectRays {
+  std::uint64_t on_splats = 0, on_backs = 0;
+};
+
 /// What the device made of the window.
 struct RenderTotals {
   std::uint64_t eye_rays = 0;
   std::uint64_t rays = 0; ///< eye and shadow rays
   std::uint64_t eye_rays_on_splats = 0;
   std::uint64_t eye_rays_on_back_faces = 0;
-  double eye_seconds = 0.0;    ///< of the device, for the nearest hits of the eye rays
-  double device_seconds = 0.0; ///< in all
+  double eye_seconds = 0.0;          ///< of the device, for the nearest hits of the eye rays
+  double device_seconds = 0.0;       ///< in all
+  std::vector<ObjectRays> of_object; ///< in the order of RenderRequest::first_ids
+  bool lit = false;                  ///< some pixel of R, G and B is above 0
   bool interrupted = false;
   int rows_done = 0;
 
@@ -45,6 +52,7 @@ struct RenderRequest {
   const Buffer<cl_float4>* normal_field = nullptr; ///< slopes of each point's normal; null: nothing is specular
 
   const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none
+  View<std::uint32_t> first_ids{}; ///< rising: the first id of each object, of which the totals then tell; empty: none
 
   bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
   bool has_specular() const { return normal_field != nullptr; }

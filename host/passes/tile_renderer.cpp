@@ -56,7 +56,7 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
                            film_, number(x), number(y), number(columns), number(rows), number(first_sample));
   };
   const auto with_photons = [&](const auto&... pools) {
-    return photons_ != nullptr ? shade(pools..., photons_->nodes, photons_->buckets, photons_->params)
+    return photons_ != nullptr ? shade(pools..., photons_->nodes, photons_->buckets, photons_->params, photons_->at_points)
                                : shade(pools...);
   };
   const auto with_field = [&](const auto&... pools) {

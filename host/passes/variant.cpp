@@ -110,6 +110,10 @@ Program caustic_irradiance_program(unsigned k) {
   return {"photon/irradiance.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
 }
 
+Program caustics_of_points_program(unsigned k) {
+  return {"photon/caustics_of_points.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
+}
+
 Program nearest_photons_program(unsigned k) {
   return {"photon/nearest.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
 }

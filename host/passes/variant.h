@@ -77,6 +77,8 @@ Program fmm_program(const char* file);
 Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power);
 /// Irradiance of given places by the k nearest photons, caustic_irradiance.
 Program caustic_irradiance_program(unsigned k);
+/// What the k nearest photons bring to the points of the pool, caustics_of_points.
+Program caustics_of_points_program(unsigned k);
 /// Nearest photons of given places, nearest_of_places, for k up to this many.
 Program nearest_photons_program(unsigned k);
 /// Room for photons that a program is built with, to gather k of them: few sizes, or each k would be compiled anew.

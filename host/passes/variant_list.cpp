@@ -140,7 +140,8 @@ std::vector<ProgramUse> all_programs() {
     uses.push_back({fmm_program(file), true, false});
   // Nor gathering of photons, whose candidates stand in private memory.
   for (const unsigned k : {64u, 512u, 1024u})
-    for (const Program& program : {nearest_photons_program(k), caustic_irradiance_program(k)})
+    for (const Program& program :
+         {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})
       uses.push_back({program, true, false});
   std::map<std::string, std::size_t> known;
   const auto add = [&](const Program& program, bool cpu, bool gpu) {

@@ -77,8 +77,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   table->allow_only(
       {"method", "order", "vmap_samples", "point_samples", "epsilon", "tolerance", "vmap", "direct_light"});
   radiosity.place = table->place();
-  if (const auto method = table->choice("method", {"fmm", "none", "direct", "progressive", "mls", "voxel_cone"}))
-    radiosity.method = *method;
+  if (const auto method = table->choice("method", {"fmm", "none", "direct"})) radiosity.method = *method;
   if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
   if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))
     radiosity.vmap_samples = static_cast<int>(*samples);

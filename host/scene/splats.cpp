@@ -65,6 +65,7 @@ void place(PointCloud& cloud, const CloudSettings& settings) {
 }
 
 void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
+  all.first.push_back(static_cast<std::uint32_t>(all.cloud.size()));
   const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   all.material.insert(all.material.end(), part.size(), material);
   if (all.cloud.size() == 0) { // the common scene, one cloud, is not copied

@@ -12,6 +12,7 @@ struct WorldSplats {
   PointCloud cloud;
   std::vector<std::uint32_t> material; ///< index into Scene::materials, one a point
   std::vector<CloudReport> reports;    ///< one a [[cloud]], in the scene's order
+  std::vector<std::uint32_t> first;    ///< point of each object: of the clouds, then the shapes, in the scene's order
 };
 
 /// Reads a cloud (PLY) or mesh (anything else that assimp knows; sampled) and completes it; file's own coordinates.

@@ -31,6 +31,16 @@ std::string habit_hint(std::string_view key) {
   return {};
 }
 
+/// How a whole number is written that stands there as a float: `photons = 1e6`.
+std::string as_integer_hint(const toml::node& node, limits::IntegerRange range) {
+  const auto* number = node.as_floating_point();
+  if (number == nullptr) return {};
+  const double value = number->get();
+  const bool fits =
+      value == std::trunc(value) && value >= static_cast<double>(range.low) && value <= static_cast<double>(range.high);
+  return fits ? "; write " + std::to_string(static_cast<long long>(value)) : std::string();
+}
+
 } // namespace
 
 std::string TableReader::path_to(std::string_view key) const {
@@ -121,7 +131,8 @@ std::optional<long long> TableReader::integer(const char* key, limits::IntegerRa
   if (node == nullptr) return std::nullopt;
   const auto* integer = node->as_integer();
   if (integer == nullptr || integer->get() < range.low || integer->get() > range.high)
-    unexpected(key, "an integer from " + std::to_string(range.low) + " to " + std::to_string(range.high));
+    fail(key, "expected an integer from " + std::to_string(range.low) + " to " + std::to_string(range.high) +
+                  ", found " + found_text(*node) + as_integer_hint(*node, range));
   return integer->get();
 }
 

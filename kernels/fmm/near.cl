@@ -1,7 +1,7 @@
 /* Mid and near rows of the links at the points: both clamps, times the visible share (method.md section 4). */
 #include "fmm/exchange.cl"
 
-/* A cluster as one flux vector a colour, at its centroid. */
+/* The points of a cluster that face one side as one flux vector a colour, at their centroid. */
 static inline void receive_mid(Receivers* r, const __global FmmFlux* source, fmm_lanes share) {
   const fmm_lanes dx = source->centre[0] - r->x, dy = source->centre[1] - r->y, dz = source->centre[2] - r->z;
   const fmm_lanes inverse = 1.0f / (dx * dx + dy * dy + dz * dz);
@@ -32,11 +32,12 @@ static inline fmm_lanes visible_share(float share, uint own_share, const __globa
 
 /* irradiance[colour * stride + i] += mid and near rows of the leaf and of all clusters above it, for a block of its points.
  * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (leaf, first point, points, -). Rows as in m2l; own_share: of each entry, NO_POINT_SHARES or
- * where its receivers' shares begin in point_shares. Written
- * by nobody else; l2p must be done. */
+ * where its receivers' shares begin in point_shares.
+ * Cluster s has the fluxes flux_begin[s] ... flux_begin[s + 1] - 1. Written by nobody else; l2p must be done. */
 __kernel void receive_points(const __global uint4* jobs, uint first_job, uint count,
                              const __global FmmCluster* clusters, const __global float* points, uint stride,
                              const __global float* flux, const __global FmmFlux* fluxes,
+                             const __global uint* flux_begin,
                              const __global uint* mid_begin, const __global uint* mid_source,
                              const __global float* mid_share, const __global uint* mid_own_share,
                              const __global uint* near_begin, const __global uint* near_source,
@@ -49,9 +50,12 @@ __kernel void receive_points(const __global uint4* jobs, uint first_job, uint co
   Receivers r = receivers_at(points, stride, job.y);
   for (uint k = job.x;; k = clusters[k].parent) {
     const uint block = job.y - clusters[k].first_point;
-    for (uint entry = mid_begin[k]; entry < mid_begin[k + 1u]; ++entry)
-      receive_mid(&r, fluxes + mid_source[entry],
-                  visible_share(mid_share[entry], mid_own_share[entry], point_shares, block));
+    for (uint entry = mid_begin[k]; entry < mid_begin[k + 1u]; ++entry) {
+      const fmm_lanes visible = visible_share(mid_share[entry], mid_own_share[entry], point_shares, block);
+      const uint source = mid_source[entry];
+      for (uint f = flux_begin[source]; f < flux_begin[source + 1u]; ++f)
+        receive_mid(&r, fluxes + f, visible);
+    }
     for (uint entry = near_begin[k]; entry < near_begin[k + 1u]; ++entry)
       receive_near(&r, clusters + near_source[entry],
                    visible_share(near_share[entry], near_own_share[entry], point_shares, block), points, stride, flux);

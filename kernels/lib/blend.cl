@@ -16,6 +16,9 @@ typedef struct Surface {
 #ifdef HAS_RADIOSITY
   float3 irradiance; /* from other surfaces */
 #endif
+#ifdef HAS_CAUSTICS
+  float4 caustic; /* caustic_pool's */
+#endif
   float t;
   float radius;  /* of the disc hit first */
   uint splat;    /* the disc hit first */
@@ -33,6 +36,9 @@ typedef struct Blend {
   float3 normal, albedo; /* weighted sums, as are irradiance, weight and t */
 #ifdef HAS_RADIOSITY
   float3 irradiance;
+#endif
+#ifdef HAS_CAUSTICS
+  float4 caustic;
 #endif
   float weight, t;
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
@@ -68,6 +74,9 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t
 #ifdef HAS_RADIOSITY
   b->irradiance += w * irradiance_pool[splat].xyz;
 #endif
+#ifdef HAS_CAUSTICS
+  b->caustic += w * caustic_pool[splat];
+#endif
   b->t += w * t;
 }
 
@@ -82,6 +91,9 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float
   b->normal = b->albedo = (float3)(0.0f);
 #ifdef HAS_RADIOSITY
   b->irradiance = (float3)(0.0f);
+#endif
+#ifdef HAS_CAUSTICS
+  b->caustic = (float4)(0.0f);
 #endif
   b->weight = b->t = 0.0f;
   b->t_first = t;
@@ -101,6 +113,9 @@ static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
   s->albedo = b->albedo * scale;
 #ifdef HAS_RADIOSITY
   s->irradiance = b->irradiance * scale;
+#endif
+#ifdef HAS_CAUSTICS
+  s->caustic = b->caustic * scale;
 #endif
   s->radius = b->radius;
   s->splat = b->splat;

@@ -158,15 +158,21 @@ static inline float16 surface_distance2(GatherPlace place, const __global float*
 
 #define PHOTON_LANE_NUMBERS ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 
+/* Squared, of a bucket's photons, as GATHER_SURFACE says. */
+static inline float16 photon_distances2(GatherPlace place, const __global float* bucket) {
+  const float16 dx = vload16(0, bucket) - place.position.x, dy = vload16(1, bucket) - place.position.y,
+                dz = vload16(2, bucket) - place.position.z;
+  const float16 d2 = dx * dx + dy * dy + dz * dz;
+#ifdef GATHER_SURFACE
+  return surface_distance2(place, bucket, dx, dy, dz, d2);
+#else
+  return d2;
+#endif
+}
+
 /* Adds the photons of a bucket that are near enough. */
 static inline void add_bucket(PhotonPool pool, GatherPlace place, uint k, uint bucket, NearPhotons* near) {
-  const __global float* words = pool.buckets + (size_t)bucket * PHOTON_BUCKET_WORDS;
-  const float16 dx = vload16(0, words) - place.position.x, dy = vload16(1, words) - place.position.y,
-                dz = vload16(2, words) - place.position.z;
-  float16 d2 = dx * dx + dy * dy + dz * dz;
-#ifdef GATHER_SURFACE
-  d2 = surface_distance2(place, words, dx, dy, dz, d2);
-#endif
+  const float16 d2 = photon_distances2(place, pool.buckets + (size_t)bucket * PHOTON_BUCKET_WORDS);
   const int16 found = d2 < near->within2;
   const uint number = (uint)popcount(byte_a_lane(found.lo) | (byte_a_lane(found.hi) << 1));
   if (number == 0u)
@@ -210,41 +216,60 @@ static inline void add_buckets(PhotonPool pool, GatherPlace place, uint k, uint 
   }
 }
 
+/* Where a walk through the map is: of the node's children, and of its parents', a bit each for those that are left. */
+typedef struct PhotonWalk {
+  ulong left; /* the node's in the lowest byte, its parent's in the next */
+  uint node, level;
+} PhotonWalk;
+
+static inline PhotonWalk walk_from_root(void) {
+  const PhotonWalk walk = {0xfful, 0u, 0u};
+  return walk;
+}
+
+/* Goes on to a node over buckets, of which some are nearer than sqrt(bound2), those that are near first: *first, its first
+ * bucket, and the squared distances of all eight. False when there is no other. The bound may be drawn closer in between. */
+static inline bool next_buckets(PhotonPool pool, __constant GatherParams* params, float3 position, float bound2,
+                                PhotonWalk* walk, uint* first, float8* distance) {
+  if (params->levels == 0u)
+    return false;
+  const uint bottom = params->levels - 1u, first_at_bottom = ((1u << (3u * bottom)) - 1u) / 7u;
+  for (;;) {
+    while (walk->level > 0u && (walk->left & 0xfful) == 0ul) {
+      walk->node = (walk->node - 1u) >> 3;
+      walk->level -= 1u;
+      walk->left >>= 8;
+    }
+    if ((walk->left & 0xfful) == 0ul)
+      return false;
+    const float8 d2 = box_distances2(pool.nodes + walk->node, position);
+    const int8 open = ((int8)((int)(walk->left & 0xfful)) & CHILD_BITS) != 0;
+    *distance = select((float8)(INFINITY), d2, open);
+    walk->left &= ~0xfful;
+    if (walk->level == bottom) {
+      *first = (walk->node - first_at_bottom) * PHOTON_CHILDREN;
+      return true;
+    }
+    const float nearest = smallest8(*distance);
+    if (!(nearest < bound2))
+      continue;
+    const uint child = lowest_byte(byte_a_lane(*distance == nearest));
+    walk->left |= bit_a_byte(byte_a_lane(*distance < bound2)) & ~(1ul << child);
+    walk->node = PHOTON_CHILDREN * walk->node + 1u + child;
+    walk->level += 1u;
+    walk->left = (walk->left << 8) | 0xfful;
+  }
+}
+
 /* Fills the list from an empty one: its candidates are in the end the k nearest photons, or all there are nearer than
  * sqrt(near->within2); more where several are equally far. */
 static inline void walk_photons(PhotonPool pool, __constant GatherParams* params, GatherPlace place, uint k,
-                                   NearPhotons* near) {
-  if (params->levels == 0u)
-    return;
-  const uint bottom = params->levels - 1u, first_at_bottom = ((1u << (3u * bottom)) - 1u) / 7u;
-  uint node = 0u, level = 0u;
-  ulong left = 0xfful; /* of the node's children a bit each, the lowest byte; of its parent's, the next */
-  for (;;) {
-    const float8 d2 = box_distances2(pool.nodes + node, place.position);
-    const int8 open = ((int8)((int)(left & 0xfful)) & CHILD_BITS) != 0;
-    const float8 distance = select((float8)(INFINITY), d2, open);
-    left &= ~0xfful;
-    if (level == bottom) {
-      add_buckets(pool, place, k, (node - first_at_bottom) * PHOTON_CHILDREN, distance, near);
-    } else {
-      const float nearest = smallest8(distance);
-      if (nearest < near->within2) {
-        const uint child = lowest_byte(byte_a_lane(distance == nearest));
-        left |= bit_a_byte(byte_a_lane(distance < near->within2)) & ~(1ul << child);
-        node = PHOTON_CHILDREN * node + 1u + child;
-        level += 1u;
-        left = (left << 8) | 0xfful;
-        continue;
-      }
-    }
-    while (level > 0u && (left & 0xfful) == 0ul) {
-      node = (node - 1u) >> 3;
-      level -= 1u;
-      left >>= 8;
-    }
-    if ((left & 0xfful) == 0ul)
-      break;
-  }
+                                NearPhotons* near) {
+  PhotonWalk walk = walk_from_root();
+  uint first;
+  float8 distance;
+  while (next_buckets(pool, params, place.position, near->within2, &walk, &first, &distance))
+    add_buckets(pool, place, k, first, distance, near);
   draw_bound(near, k, 0u);
 }
 
@@ -315,3 +340,25 @@ static inline float3 irradiance_of(PhotonPool pool, __constant GatherParams* par
   const float area = 3.14159265f * max(enough ? near->within2 : params->radius2, SMALLEST_GATHER2);
   return (float3)(sum16f(red), sum16f(green), sum16f(blue)) * (share / area);
 }
+
+#ifdef GATHER_SURFACE
+/* Sum of the powers of all photons nearer than sqrt(bound2), which count the less the farther they are: 1 - d^2 / bound2
+ * times (Epanechnikov's weight). */
+static inline float3 power_within(PhotonPool pool, __constant GatherParams* params, GatherPlace place, float bound2) {
+  float16 red = 0.0f, green = 0.0f, blue = 0.0f;
+  PhotonWalk walk = walk_from_root();
+  uint first;
+  float8 distance;
+  while (next_buckets(pool, params, place.position, bound2, &walk, &first, &distance)) {
+    ulong left = byte_a_lane(distance < bound2);
+    for (; left != 0ul; left &= left - 1ul) {
+      const __global float* words = pool.buckets + (size_t)(first + lowest_byte(left)) * PHOTON_BUCKET_WORDS;
+      const float16 weight = max(1.0f - photon_distances2(place, words) / bound2, 0.0f);
+      red += weight * vload16(4, words);
+      green += weight * vload16(5, words);
+      blue += weight * vload16(6, words);
+    }
+  }
+  return (float3)(sum16f(red), sum16f(green), sum16f(blue));
+}
+#endif

@@ -81,10 +81,12 @@ static inline uint pool_component(uint4 texel, uint i) {
 #endif
 
 #ifdef HAS_CAUSTICS
-/* And the photon map (kernels/lib/photon_gather.cl). */
-#define POOL_ARGS NORMAL_ARGS, photon_nodes, photon_buckets, gather_params
+/* And the photon map (kernels/lib/photon_gather.cl), and what is known of it at the points already
+ * (kernels/photon/caustics_of_points.cl). */
+#define POOL_ARGS NORMAL_ARGS, photon_nodes, photon_buckets, gather_params, caustic_pool
 #define POOL_PARAMS \
-  NORMAL_PARAMS, const __global PhotonNode *restrict photon_nodes, const __global float *restrict photon_buckets, __constant GatherParams *gather_params
+  NORMAL_PARAMS, const __global PhotonNode *restrict photon_nodes, const __global float *restrict photon_buckets, __constant GatherParams *gather_params, \
+      const __global float4 *restrict caustic_pool
 #else
 #define POOL_ARGS NORMAL_ARGS
 #define POOL_PARAMS NORMAL_PARAMS

@@ -72,7 +72,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   SampleId id = {(uint2)(first + item, 0x20000000u), 0u, params->seed, 0u};
   Emission e = emit_photon(POOL_ARGS, from, aim, first + item - aim->first, id);
   const uint most = min(params->most_bounces, PHOTON_MOST_BOUNCES);
-  float3 power = e.power, emitted = (float3)(0.0f), absorbed = (float3)(0.0f), position = (float3)(0.0f);
+  float3 power = e.power, emitted = (float3)(0.0f), absorbed = (float3)(0.0f), position = (float3)(0.0f), inward = (float3)(0.0f);
   Ray ray = e.ray;
   ShadowEnds ends = e.ends;
   Media media = in_air();
@@ -103,6 +103,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     float3 before = power;
     power *= beer_of(media, materials, s.t);
     position = s.position;
+    inward = -s.normal;
     splat = s.splat;
 #ifdef HAS_GLASS
     const float here = ior_of(media, materials);
@@ -132,8 +133,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
 #endif
   __global PhotonFlight* flight = flights + item;
   store3(position, flight->position);
-  flight->direction = direction_bits(ray.direction.x, 0u) | direction_bits(ray.direction.y, 10u) |
-                      direction_bits(ray.direction.z, 20u);
+  flight->inward = direction_bits(inward.x, 0u) | direction_bits(inward.y, 10u) | direction_bits(inward.z, 20u);
   store3(end == PHOTON_ASIDE ? (float3)(0.0f) : power, flight->power);
   flight->end = end;
   store3(emitted, flight->emitted);

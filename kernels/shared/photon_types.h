@@ -6,7 +6,7 @@
 
 typedef struct Photon {
   float position[3]; /* bytes 0-11: root cube */
-  pg_uint direction; /* bytes 12-15: the way it flew, PHOTON_DIRECTION_BITS a component */
+  pg_uint inward;    /* bytes 12-15: against the normal of the surface, on the side that it came to, packed as below */
   float power[3];    /* bytes 16-27: times PhotonFlight::seen */
   pg_uint splat;     /* bytes 28-31: that it was stored on */
 } Photon;
@@ -47,7 +47,7 @@ typedef struct PhotonAim {
 
 typedef struct PhotonFlight {
   float position[3]; /* bytes 0-11: where it was stored, root cube */
-  pg_uint direction; /* bytes 12-15: as Photon's */
+  pg_uint inward;    /* bytes 12-15: as Photon's */
   float power[3];    /* bytes 16-27: at its end */
   pg_uint end;       /* bytes 28-31 */
   float emitted[3];  /* bytes 32-43: power when it set out */

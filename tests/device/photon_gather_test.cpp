@@ -197,7 +197,7 @@ double irradiance_by_sorting(const std::vector<Photon>& photons, const cl_float4
     const double x = p.position[0] - place.s[0], y = p.position[1] - place.s[1], z = p.position[2] - place.s[2];
     const double d2 = x * x + y * y + 16.0 * z * z;
     float direction[3];
-    unpack_direction(p.direction, direction);
+    unpack_direction(p.inward, direction);
     if (d2 < radius * radius && direction[2] < 0.0f) found.emplace_back(d2, p.power[1]);
   }
   std::sort(found.begin(), found.end());
@@ -217,7 +217,7 @@ TEST_CASE("irradiance by photons is that of all photons sorted") {
   std::vector<Photon> photons = caustic_photons(10'000, 8);
   for (Photon& p : photons) {
     const float up[3] = {0.0f, 0.6f, 0.8f}, down[3] = {0.6f, 0.0f, -0.8f};
-    p.direction = packed_direction(u(g) < 0.2f ? up : down);
+    p.inward = packed_direction(u(g) < 0.2f ? up : down);
     p.position[2] += 0.002f * u(g);
     p.power[0] = p.power[1] = p.power[2] = u(g) * u(g) * u(g);
   }

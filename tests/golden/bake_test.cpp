@@ -116,6 +116,7 @@ TEST_CASE("bake and render refuse before the work what they cannot do") {
       {"bake " + scene + " -o " + folder.file("x.exr"), 5, ".ply"},
       {"bake " + scene + " -o " + folder.file("missing/x.ply"), 5, "missing"},
       {"bake " + scene + " -o " + folder.file("x.ply") + " --stats /dev/full", 5, "/dev/full"},
+      {"bake " + scene + " -o " + folder.file("x.ply") + " --quality best", 2, "draft"},
   };
   for (const Case& c : cases) {
     const Run run = run_program(c.arguments);

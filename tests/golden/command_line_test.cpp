@@ -154,6 +154,15 @@ TEST_CASE("wrong usage is exit code 2 and says what is right") {
   }
 }
 
+TEST_CASE("the name that a picture gets by default is no input's, either") {
+  const TemporaryFolder folder;
+  folder.write("scan.png", "an input, whatever it holds");
+  const Run run = run_program("render scan.png", "cd " + folder.file("") + " &&");
+  CAPTURE(run.err);
+  CHECK(run.code == 2);
+  CHECK_THAT(run.err, Contains("scan.png would be written, but is an input") && Contains("name another with -o"));
+}
+
 TEST_CASE("wrong input is exit code 3 and names the file") {
   const TemporaryFolder folder;
   struct Case {
@@ -277,6 +286,11 @@ TEST_CASE("info tells what a file holds, and devices list and check") {
   const Run info = run_program("info " + cloud);
   CHECK(info.code == 0);
   CHECK_THAT(info.out, Contains("3 in the file") && Contains("weird") && Contains("not used") && Contains("estimated"));
+  const Run scene = run_program("info " + folder.write("mirror.toml", mirror_scene()));
+  CHECK(scene.code == 0);
+  // The centres of its splats: half a spacing, 0.1, from the edges.
+  CHECK_THAT(scene.out, Contains("shape.0 (sphere, ") && Contains("shape.1 (quad, ") &&
+                            Contains("[-0.95, -1, -0.95] to [0.95, -1, 0.95]"));
   const Run devices = run_program("devices --json");
   CHECK(devices.code == 0);
   CHECK(nlohmann::json::parse(devices.out).size() >= 1);
@@ -319,6 +333,48 @@ TEST_CASE("compare: figures on stdout as text or JSON, and exit codes") {
   CHECK_THAT(run.err, Contains("none.exr: no such file"));
   CHECK(run_program("compare " + a).code == 2);
   CHECK(run_program("compare " + a + " " + scene).code == 3);
+}
+
+TEST_CASE("a black picture says why, and what to change") {
+  const TemporaryFolder folder;
+  const std::string head = "version = 1\n[render]\nsize = [16, 12]\nspp = 2\n"
+                           "[camera]\nposition = [0, 1, 3]\nlook_at = [0, 0, 0]\n"
+                           "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
+                           "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0, 0, 0]\n"
+                           "emission = [4, 4, 4]\n";
+  const auto quad = [](double height, const std::string& material, bool up) {
+    const std::string z = "[0, 0, 4]\n", x = "[4, 0, 0]\n";
+    return "[[shape]]\ntype = \"quad\"\ncorner = [-2, " + std::to_string(height) + ", -2]\nedge_u = " + (up ? z : x) +
+           "edge_v = " + (up ? x : z) + "spacing = 0.1\nmaterial = \"" + material + "\"\n";
+  };
+  const auto warnings = [&](const std::string& scene, const std::string& options) {
+    const Run run =
+        run_program("render " + folder.write("s.toml", scene) + " --quiet -o " + folder.file("x.exr") + options);
+    CHECK(run.code == 0);
+    return run.err;
+  };
+  const std::string floor = head + quad(0.0, "grey", true), none = " --set radiosity.method=none",
+                    path = " --integrator path",
+                    light = "[[light]]\ntype = \"point\"\nposition = [0, 2, 0]\n"
+                            "power_w = [9, 9, 9]\n";
+  CHECK(warnings(floor + quad(1.5, "lamp", false), "").empty());
+  for (const std::string& options : {std::string(), none, path}) {
+    CAPTURE(options);
+    const std::string found = warnings(floor + quad(1.5, "lamp", true), options);
+    CHECK_THAT(found, Contains(options.empty() ? "no light reaches any surface" : "the picture is all black") &&
+                          Contains("shape.1 (quad, ") && Contains("swap edge_u and edge_v"));
+    CHECK(std::count(found.begin(), found.end(), '\n') == 1);
+  }
+  CHECK_THAT(warnings(floor + light, " --set light.0.position=[0,-2,0]" + none), Contains("[0, -2, 0] may lie inside"));
+  CHECK_THAT(warnings(floor + light, " --set render.max_depth=0" + path), Contains("render.max_depth = 0 leaves out"));
+  CHECK_THAT(warnings(floor + light, " --set material.0.albedo=[0,0,0]"), Contains("an albedo above 0"));
+  const std::string backs = warnings(head + quad(0.0, "grey", false) + light, "");
+  CHECK_THAT(backs, Contains("100 % of the eye rays") && Contains("shape.0 (quad, ") &&
+                        Contains("swap edge_u and edge_v") && !Contains("[[cloud]]"));
+  CHECK_THAT(warnings(floor + quad(0.5, "grey", false) + light, ""), Contains("most are of shape.1 (quad, "));
+  const std::string caustics = warnings(floor + light, path + " --paths LS+DE");
+  CHECK_THAT(caustics, Contains("no surface of it is specular"));
+  CHECK(std::count(caustics.begin(), caustics.end(), '\n') == 1);
 }
 
 TEST_CASE("light paths go with the path tracer only") {

@@ -10,7 +10,7 @@ namespace pointgi::test {
 inline Photon make_photon(float x, float y, float z, const float direction[3], float power = 1.0f) {
   Photon p{};
   p.position[0] = x, p.position[1] = y, p.position[2] = z;
-  p.direction = packed_direction(direction);
+  p.inward = packed_direction(direction);
   for (float& c : p.power)
     c = power;
   return p;

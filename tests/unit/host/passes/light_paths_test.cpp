@@ -43,6 +43,40 @@ TEST_CASE("classes of light paths count their paths, the longest bounds the boun
   CHECK(light_paths("", 0).most_bounces == 0u);
 }
 
+TEST_CASE("classes that a scene has no path of are told from those that it has, with what is missing") {
+  PathSupply lit, shone, mirror, phong;
+  lit.diffuse = lit.delta_lights = true;
+  shone.diffuse = shone.area_lights = true;
+  mirror = lit;
+  mirror.specular = true;
+  phong = mirror;
+  phong.lobes = true;
+  const auto why = [](const std::string& list, const PathSupply& scene, std::optional<int> max_depth = {}) {
+    return why_no_path(list, max_depth, scene);
+  };
+  for (const char* list : {"", "LDE", "LDDDE", "LD*S*E", "LSE,LDE"})
+    CHECK(why(list, lit).empty());
+  CHECK(why("LE", shone).empty());
+  CHECK_THAT(why("LE", lit), Contains("are not seen"));
+  for (const char* list : {"LSE", "LS+DE", "LDDSE", "LDSDE,LSE"})
+    CHECK_THAT(why(list, shone), Contains("no surface of it is specular"));
+  CHECK(why("LDSE", mirror).empty());
+  CHECK_THAT(why("LS+DE", mirror), Contains("by way of mirrors"));
+  CHECK(why("LS+DE", phong).empty());
+  CHECK(why("LDDDE", lit, 3).empty());
+  CHECK_THAT(why("LDDDE", lit, 2), Contains("render.max_depth = 2"));
+  CHECK_THAT(why("", lit, 0), Contains("render.max_depth = 0"));
+  CHECK(why("", shone, 0).empty());
+  PathSupply black = shone;
+  black.diffuse = false;
+  CHECK_THAT(why("LD+E", black), Contains("an albedo above 0"));
+  CHECK(why("LSE,LD+E", PathSupply{}).empty()); // no light at all: the scene is told of that elsewhere
+  CHECK(why("L" + std::string(30, 'D') + "E", lit).empty());
+  PathSupply nothing;
+  nothing.delta_lights = true;
+  CHECK_THAT(why("LDSE", nothing), Contains("name other classes"));
+}
+
 TEST_CASE("classes with specular surfaces tell caustics from reflections") {
   const std::vector<std::string> surfaces = {"", "D", "S", "DS", "SD", "SSD", "DDSS", "DSD", "SDS", "SDDS"};
   CHECK(counted("LE", surfaces) == "1000000000");

@@ -24,7 +24,7 @@ Values in_bucket(const PhotonMap& map, std::size_t photon) {
 Values as_values(const Photon& p) {
   Values values(p.position, p.position + 3);
   values.push_back(0.0f);
-  std::memcpy(&values[3], &p.direction, sizeof p.direction);
+  std::memcpy(&values[3], &p.inward, sizeof p.inward);
   values.insert(values.end(), p.power, p.power + 3);
   return values;
 }

@@ -104,7 +104,7 @@ irradiance = [1, 2, 3]
 [environment]
 radiance = [0.1, 0.2, 0.3]
 [radiosity]
-method = "progressive"
+method = "direct"
 order = 4
 vmap_samples = 16
 epsilon = 2e-2
@@ -161,7 +161,7 @@ TEST_CASE("every key of the settings arrives", "[scene]") {
   CHECK(scene.camera.fov_deg == 55);
   CHECK(folder.without_folder(scene.camera.place.text()) == "scene.toml:10:1");
   CHECK(scene.environment == Vector3d(0.1, 0.2, 0.3));
-  CHECK(scene.radiosity.method == "progressive");
+  CHECK(scene.radiosity.method == "direct");
   CHECK(scene.radiosity.order == 4);
   CHECK(scene.radiosity.vmap_samples == 16);
   CHECK(scene.radiosity.epsilon == 2e-2);

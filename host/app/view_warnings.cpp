@@ -1,0 +1,100 @@
+#include "host/app/view_warnings.h"
+#include "host/scene/objects.h"
+#include <algorithm>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+namespace pointgi {
+
+namespace {
+
+std::string text(const Vector3d& p) {
+  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", p.x(), p.y(), p.z());
+}
+
+std::string place_of(const LightSettings& light) {
+  if (const auto* point = std::get_if<PointLight>(&light.light))
+    return "the point light at " + text(point->position) + " may lie inside or behind something";
+  return "the directional light of direction " + text(std::get<DirectionalLight>(light.light).direction) +
+         " (the way that its light travels) may meet backs, or something that stands before all else";
+}
+
+/// What may keep the light away, of the lights that the scene has: the first of each kind speaks for the others.
+std::string suspects(const Scene& scene) {
+  std::string list = "surfaces are lit, and shine, on the side of their normal only";
+  for (std::size_t i = 0; i < scene.clouds.size() + scene.shapes.size(); ++i) {
+    const SceneObject object = object_of(scene, i);
+    const auto is_its = [&](const MaterialSettings& m) { return m.name == object.material; };
+    const auto material = std::find_if(scene.materials.begin(), scene.materials.end(), is_its);
+    if (material->emission.maxCoeff() <= 0.0) continue;
+    list += "; " + object.name + ", which shines, may face away from what it should light: " + object.how_to_turn;
+    break;
+  }
+  if (!scene.lights.empty()) list += "; " + place_of(scene.lights.front());
+  if (scene.environment.maxCoeff() > 0.0) list += "; what surrounds all else keeps the light of [environment] out";
+  if (scene.render.max_depth)
+    list += "; render.max_depth = " + std::to_string(*scene.render.max_depth) + " may leave out too much";
+  return list;
+}
+
+bool is_dark(View<float> values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return !(v > 0.0f); });
+}
+
+/// The object whose backs were met most, and what to do.
+std::string advice_on_backs(const RenderTotals& totals, const Scene& scene) {
+  const auto fewer = [](const ObjectRays& a, const ObjectRays& b) { return a.on_backs < b.on_backs; };
+  const auto most = std::max_element(totals.of_object.begin(), totals.of_object.end(), fewer);
+  if (most == totals.of_object.end() || most->on_backs == 0) return "parts of surfaces face away from the camera";
+  const SceneObject object = object_of(scene, static_cast<std::size_t>(most - totals.of_object.begin()));
+  const std::string whose = "most are of " + object.name;
+  if (most->on_backs > most->on_splats / 2)
+    return whose + ", which faces the other way (" + object.how_to_turn + "), or the camera stands inside or behind it";
+  if (object.is_cloud)
+    return whose + ", parts of which face away from the camera; where they should not, normals = \"estimate\" may find "
+                   "better ones";
+  return whose + ", parts of which face away from the camera; where they should not: " + object.how_to_turn;
+}
+
+} // namespace
+
+bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedScene& ready) {
+  const DeviceLighting& lighting = ready.lighting;
+  const PathSupply supply{has_reflectors(scene, points_of(ready.pools)), lighting.has_specular(),
+                          lighting.has_type(MATERIAL_PHONG), !lighting.emitters.empty() || lighting.has_environment,
+                          !lighting.delta.empty()};
+  const std::string reason = why_no_path(list, scene.render.max_depth, supply);
+  if (reason.empty()) return false;
+  spdlog::warn("the picture will be black: {}none of the light paths that count can be in this scene: {}",
+               list.empty() ? "" : "--paths " + list + ": ", reason);
+  return true;
+}
+
+bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> direct, View<float> from_surfaces) {
+  if (!ready.lighting.has_light() || ready.lighting.has_specular() || direct.size == 0) return false;
+  if (!is_dark(direct) || !is_dark(from_surfaces)) return false;
+  spdlog::warn("no light reaches any surface: {}", suspects(scene));
+  return true;
+}
+
+void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool told) {
+  if (totals.eye_rays_on_splats == 0 && !totals.interrupted && totals.eye_rays > 0) {
+    const Vector3d& low = ready.frame.origin;
+    spdlog::warn(
+        "no eye ray met a splat: the splats lie within {} and {}, the camera is at {}; are the units the same, "
+        "and does it look that way?",
+        text(low), text(low + Vector3d::Constant(ready.frame.side)), text(scene.camera.position));
+    return;
+  }
+  const double backs = totals.back_face_share();
+  if (backs > 0.1)
+    spdlog::warn("{:.0f} % of the eye rays that hit a splat met its back, which is black: {}", 100.0 * backs,
+                 advice_on_backs(totals, scene));
+  if (totals.lit || totals.interrupted || told || !ready.lighting.has_light()) return;
+  if (totals.eye_rays_on_back_faces == totals.eye_rays_on_splats) return; // said above
+  const bool reflects = has_reflectors(scene, points_of(ready.pools)) || ready.lighting.has_specular();
+  spdlog::warn("the picture is all black: {}", reflects ? "no light reaches what the camera sees: " + suspects(scene)
+                                                        : "nothing reflects light: give a material an albedo above 0");
+}
+
+} // namespace pointgi

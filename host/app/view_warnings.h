@@ -1,0 +1,21 @@
+#pragma once
+/// What black or empty pictures most often come from, said in the log.
+#include "host/app/indirect_stages.h"
+#include "host/app/prepared_scene.h"
+#include "host/passes/render.h"
+
+namespace pointgi {
+
+/// Warns where none of the light paths that `list` asks the path tracer for can be in this scene, before the work;
+/// tells whether it did.
+bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedScene& ready);
+
+/// Warns where lights are there, but none of their light reaches any surface, and nothing is specular, so that no other
+/// way of light is left; tells whether it did. `direct`: irradiance by lights, `from_surfaces`: by the exchange (may be
+/// empty), each [points x 3].
+bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> direct, View<float> from_surfaces);
+
+/// Warns of a picture that shows no splat, many backs, or that is black; of the last not where `told` why before.
+void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool told);
+
+} // namespace pointgi
