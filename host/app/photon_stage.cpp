@@ -28,17 +28,14 @@ std::size_t room_for(const IndirectRequest& request, const Caustics& caustics) {
   return (most_stored_photons - caustics.photons.size()) / (others ? 2 : 1);
 }
 
-/// The stage itself, from these sources.
-void fly(Session& session, const DevicePools& pools, const IndirectRequest& request,
-         const Buffer<cl_float4>& normal_field, const PhotonSources& sources, const CausticSettings& settings,
-         Caustics& caustics, StageLog& stages) {
+/// The stage itself: `send` sends `photons` and is watched by what it is given.
+template <typename Send>
+void fly(const IndirectRequest& request, long long photons, Caustics& caustics, StageLog& stages, const Send& send) {
   stages.start("photon");
   const std::size_t room = room_for(request, caustics);
   TracedPhotons traced = [&] {
     Progress progress("photon", request.quiet);
-    const FlightControl control{request.stop, [&](double share) { progress.update(share); }, room};
-    return send_photons(session, pools, request.variant, request.lighting, sources, request.points, normal_field,
-                        settings, request.frame.side, control);
+    return send(FlightControl{request.stop, [&](double share) { progress.update(share); }, room});
   }();
   if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
   const PhotonLedger& ledger = traced.ledger;
@@ -48,7 +45,7 @@ void fly(Session& session, const DevicePools& pools, const IndirectRequest& requ
   if (traced.one_of > 1)
     spdlog::warn("caustics: memory is kept for {} stored photons: one of {} stays, {} times as bright; "
                  "caustics.photons = {} would keep all",
-                 room, traced.one_of, traced.one_of, settings.photons / static_cast<long long>(traced.one_of));
+                 room, traced.one_of, traced.one_of, photons / static_cast<long long>(traced.one_of));
   if (caustics.photons.empty())
     caustics.photons = std::move(traced.stored);
   else
@@ -73,19 +70,23 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
   if (const std::string exchange = reason_against_radiosity(request);
       settings.place && !exchange.empty() && (settings.feedback || settings.indirect))
     spdlog::warn("{}: [caustics] feedback and indirect have no effect: {}", settings.place->text(), exchange);
-  fly(session, pools, request, *normal_field, photon_sources(request.lighting, request.points), settings, caustics,
-      stages);
+  fly(request, settings.photons, caustics, stages, [&](const FlightControl& control) {
+    return send_photons(session, pools, request.variant, request.lighting,
+                        photon_sources(request.lighting, request.points), request.points, *normal_field, settings,
+                        request.frame.side, control);
+  });
   return caustics;
 }
 
 std::vector<float> add_indirect_photons(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                         const Buffer<cl_float4>& normal_field, View<float> radiosity, double share,
                                         Caustics& caustics, StageLog& stages) {
-  CausticSettings settings = request.scene.caustics;
-  settings.photons = std::llround(share * static_cast<double>(settings.photons));
+  const long long photons = std::llround(share * static_cast<double>(request.scene.caustics.photons));
   const std::size_t before = caustics.photons.size();
-  fly(session, pools, request, normal_field, sources_of_radiosity(radiosity, request.points), settings, caustics,
-      stages);
+  fly(request, photons, caustics, stages, [&](const FlightControl& control) {
+    return send_photons_from_surfaces(session, pools, request.variant, request.lighting, radiosity, request.points,
+                                      normal_field, static_cast<std::uint32_t>(photons), request.frame.side, control);
+  });
   return irradiance_by_photons({caustics.photons.data() + before, caustics.photons.size() - before}, request.points);
 }
 

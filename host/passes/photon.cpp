@@ -1,5 +1,6 @@
 #include "host/passes/photon.h"
 #include "host/passes/visibility.h"
+#include "host/photon/diffuse_photons.h"
 #include "host/photon/kept_photons.h"
 #include <algorithm>
 
@@ -61,6 +62,12 @@ SceneFeatures features_of(const DeviceLighting& lighting) {
   return features;
 }
 
+auto is_specular(const DeviceLighting& lighting) {
+  return [&lighting](const Splat& s) {
+    return lighting.materials[static_cast<std::size_t>(s.material)].type != MATERIAL_DIFFUSE;
+  };
+}
+
 } // namespace
 
 void add(const PhotonLedger& ledger, PhotonLedger& to) {
@@ -78,7 +85,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
                             const FlightControl& control) {
   TracedPhotons traced;
   if (request.plan.photons == 0) return traced;
-  const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.equal_power);
+  const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.start);
   cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
   RenderParams params = request.lighting.params;
   params.step_delta = static_cast<float>(request.variant.step_delta / request.side);
@@ -143,10 +150,7 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
                            const FlightControl& control) {
   const bool equal_power = settings.power == "equal";
   const std::size_t lights = sources.delta.size() + 2;
-  const SpecularLeaves leaves = specular_leaves(
-      points,
-      [&](const Splat& s) { return lighting.materials[static_cast<std::size_t>(s.material)].type != MATERIAL_DIFFUSE; },
-      most_photon_pairs / lights, equal_power);
+  const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), most_photon_pairs / lights, equal_power);
   const auto ask = [&](View<Splat> table, View<Segment> segments) {
     const auto step_delta = static_cast<float>(variant.step_delta / side);
     return DeviceVisibility(session, pools, variant, table, step_delta).blocked(segments);
@@ -156,7 +160,24 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
   options.equal_power = equal_power;
   options.seed = lighting.params.seed;
   const EmissionPlan plan = plan_emission(leaves, points, sources, ask, options);
-  return trace_photons(session, pools, {lighting, sources, leaves, plan, normal_field, variant, side, equal_power},
+  const PhotonStart start = equal_power ? PhotonStart::equal_power : PhotonStart::aimed;
+  return trace_photons(session, pools, {lighting, sources, leaves, plan, normal_field, variant, side, start}, control);
+}
+
+TracedPhotons send_photons_from_surfaces(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                                         const DeviceLighting& lighting, View<float> radiosity, View<Splat> points,
+                                         const Buffer<cl_float4>& normal_field, std::uint32_t photons, double side,
+                                         const FlightControl& control) {
+  const PhotonSources sources = sources_of_radiosity(
+      radiosity, points, [&](const Splat& s) { return lighting.materials[static_cast<std::size_t>(s.material)].type; });
+  const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), 1, false);
+  EmissionPlan plan;
+  if (photons > 0 && !sources.emitters.empty()) {
+    plan.aims.push_back({0, photons, AIM_EMITTERS, NO_PHOTON_LEAF, 1.0f / static_cast<float>(photons)});
+    plan.photons = photons;
+  }
+  return trace_photons(session, pools,
+                       {lighting, sources, leaves, plan, normal_field, variant, side, PhotonStart::from_surfaces},
                        control);
 }
 

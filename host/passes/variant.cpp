@@ -101,9 +101,11 @@ Program fmm_program(const char* file) {
   return {file, ""};
 }
 
-Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power) {
-  return program(variant, "photon/trace_photons.cl",
-                 feature_options(features) + (equal_power ? " -D EQUAL_POWER" : ""));
+Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, PhotonStart start) {
+  const char* option = start == PhotonStart::equal_power     ? " -D EQUAL_POWER"
+                       : start == PhotonStart::from_surfaces ? " -D FROM_SURFACES"
+                                                             : "";
+  return program(variant, "photon/trace_photons.cl", feature_options(features) + option);
 }
 
 Program caustic_irradiance_program(unsigned k) {

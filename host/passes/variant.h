@@ -73,8 +73,15 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 /// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
 
-/// Photons from the lights to diffuse surfaces, trace_photons; the scene has specular surfaces.
-Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, bool equal_power);
+/// Where photons set out.
+enum class PhotonStart {
+  aimed,        ///< at sources, aimed at leaves, with the power that makes their sum unbiased
+  equal_power,  ///< the same with equal powers, as in the thesis
+  from_surfaces ///< where specular splats see what sends them diffuse light (kernels/photon/emit_from_surfaces.cl)
+};
+
+/// Photons by way of specular surfaces to diffuse ones, trace_photons.
+Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, PhotonStart start);
 /// Irradiance of given places by the k nearest photons, caustic_irradiance.
 Program caustic_irradiance_program(unsigned k);
 /// What the k nearest photons bring to the points of the pool, caustics_of_points.

@@ -167,7 +167,7 @@ std::vector<ProgramUse> all_programs() {
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
     add(path_program(v, traced, true), cpu, gpu);
-    add(trace_photons_program(v, lit, false), cpu, gpu);
+    add(trace_photons_program(v, lit, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"traverse/probe.cl", build_options(v)}, cpu, gpu);
     if (!usual_walk || !usual_group) continue;
     add(shade_program(v, diffuse), cpu, gpu);
@@ -178,7 +178,8 @@ std::vector<ProgramUse> all_programs() {
       add(shade_program(v, caustics), cpu, false);
     }
     add(path_program(v, {true, true, true}, true), cpu, gpu);
-    add(trace_photons_program(v, lit, true), cpu, gpu);
+    add(trace_photons_program(v, lit, PhotonStart::equal_power), cpu, gpu);
+    add(trace_photons_program(v, lit, PhotonStart::from_surfaces), cpu, gpu);
   }
   return uses;
 }

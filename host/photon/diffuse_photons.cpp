@@ -1,5 +1,6 @@
 #include "host/photon/diffuse_photons.h"
 #include "host/scene/shares.h"
+#include <algorithm>
 
 namespace pointgi {
 
@@ -14,20 +15,21 @@ std::vector<float> irradiance_by_photons(View<Photon> photons, View<Splat> point
   return irradiance;
 }
 
-PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points) {
+PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points,
+                                   const std::function<pg_uint(const Splat&)>& type_of) {
   PhotonSources sources;
-  const auto luminous_power = [&](std::size_t p) {
-    const float* b = &radiosity[3 * p];
-    return (0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2]) * points[p].area;
-  };
+  if (std::none_of(radiosity.begin(), radiosity.end(), [](float b) { return b > 0.0f; })) return sources;
   constexpr float inverse_pi = 0.31830989f;
   for (std::size_t p = 0; p < points.size; ++p) {
-    if (!(luminous_power(p) > 0.0)) continue;
-    sources.emitters.push_back({static_cast<pg_uint>(p), 0.0f});
     const float* b = &radiosity[3 * p];
     sources.radiance.push_back({inverse_pi * b[0], inverse_pi * b[1], inverse_pi * b[2], 0.0f});
+    if (type_of(points[p]) != MATERIAL_DIFFUSE && points[p].area > 0.0f)
+      sources.emitters.push_back({static_cast<pg_uint>(p), 0.0f});
   }
-  accumulate_shares(sources.emitters, [&](const Emitter& emitter) { return luminous_power(emitter.point); });
+  accumulate_shares(sources.emitters, [&](const Emitter& emitter) {
+    const Splat& splat = points[emitter.point];
+    return (type_of(splat) == MATERIAL_GLASS ? 2.0 : 1.0) * splat.area;
+  });
   return sources;
 }
 

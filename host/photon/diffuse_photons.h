@@ -10,7 +10,10 @@ namespace pointgi {
 /// splat's effective area. All of their power is in it, whatever they make of a place between splats.
 std::vector<float> irradiance_by_photons(View<Photon> photons, View<Splat> points);
 
-/// Splats of radiosity [points x 3, W/m², scaled] > 0 as sources of photons: an area light each, of radiance B/pi.
-PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points);
+/// What kernels/photon/emit_from_surfaces.cl starts from: for emitters the specular splats, by their areas, those of
+/// glass by both sides'; for radiance B/pi of all points, of radiosity B [points x 3, W/m², scaled]. No emitters where
+/// all are dark or none is specular. `type_of`: MATERIAL_... of a splat.
+PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points,
+                                   const std::function<pg_uint(const Splat&)>& type_of);
 
 } // namespace pointgi

@@ -1,10 +1,13 @@
 /* Photons from the lights by way of specular surfaces to diffuse ones: LS+D (method.md section 5).
  * NDRange: 1-D, a work-item a photon, padded; work-item i follows photon first + i, for i < count, and writes flights[i].
  * A photon depends on its number alone, not on how they are cut into launches. aims, in the order of their photons,
- * aim_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER, any leaf will do for a photon, else only its
- * own. */
+ * aim_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER or FROM_SURFACES, any leaf will do for a
+ * photon, else only its own. */
 #include "photon/emit.cl"
 #include "lib/specular.cl"
+#ifdef FROM_SURFACES
+#include "photon/emit_from_surfaces.cl"
+#endif
 
 #define DIMENSION_CHOICE 3u
 #define DIMENSION_SCATTER 4u
@@ -70,14 +73,18 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   const __global PhotonAim* aim = aims + aim_of(aims, aim_count, first + item);
   const PhotonSource from = {{params, materials, delta_lights, emitters}, radiance, leaves, leaf_splats};
   SampleId id = {(uint2)(first + item, 0x20000000u), 0u, params->seed, 0u};
-  Emission e = emit_photon(POOL_ARGS, from, aim, first + item - aim->first, id);
+  float rays = 0.0f;
+#ifdef FROM_SURFACES
+  const Emission e = emit_from_surfaces(POOL_ARGS, from, aim, first + item - aim->first, id, &rays);
+#else
+  const Emission e = emit_photon(POOL_ARGS, from, aim, first + item - aim->first, id);
+#endif
   const uint most = min(params->most_bounces, PHOTON_MOST_BOUNCES);
   float3 power = e.power, emitted = (float3)(0.0f), absorbed = (float3)(0.0f), position = (float3)(0.0f), inward = (float3)(0.0f);
   Ray ray = e.ray;
   ShadowEnds ends = e.ends;
   Media media = in_air();
   uint end = PHOTON_ASIDE, bounces = 0u, splat = NO_SPLAT;
-  float rays = 0.0f;
 #ifdef HAS_GLASS
   float set_out_in = 0.0f; /* index of what the photon set out in, when it has passed through glass: only then it is known */
 #endif
@@ -90,7 +97,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
       break;
     }
     if (bounces == 0u) {
-#ifdef EQUAL_POWER
+#if defined(EQUAL_POWER) || defined(FROM_SURFACES)
       if (leaf_of[s.splat] == NO_PHOTON_LEAF)
         break;
 #else

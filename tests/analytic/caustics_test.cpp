@@ -248,3 +248,10 @@ TEST_CASE("with caustics.indirect mirrors throw the light of diffuse surfaces, t
   // Near its edges a floor gathers from where no photon can lie: too little, by 3 % more with 200,000 photons.
   CHECK(added == Approx(truth).epsilon(0.06));
 }
+
+TEST_CASE("with both, light goes round between surfaces and mirrors until nothing is left out") {
+  const Picture picture = render_text(indirect_scene("64", "photons = 1000000\nfeedback = true\nindirect = true\n"));
+  const double truth = traced_mean("", "4096"), ours = mean(picture, "G");
+  CAPTURE(ours, truth);
+  CHECK(ours == Approx(truth).epsilon(0.01));
+}

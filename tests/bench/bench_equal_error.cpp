@@ -1,6 +1,8 @@
-/// Time to equal error: the renderer (radiosity, photons, gather) against the path tracer over the same splats. Both
-/// are measured from the prepared cloud on, in turn, A B A B, and the median of the pairs counts.
-/// bench_equal_error --help
+/// Time to equal error: the renderer (radiosity, photons, gather) against the path tracer over the same splats. How
+/// many samples a pixel each side needs is found in small pictures, whose reference is affordable; then both make
+/// pictures of the scene's own size, from the prepared cloud on, in turn, A B A B, and the median of the pairs counts.
+/// The path tracer takes few samples there, as many more of which would take that many times as long. bench_equal_error
+/// --help
 #include "host/app/light_stages.h"
 #include "host/app/prepared_scene.h"
 #include "host/passes/render.h"
@@ -133,19 +135,24 @@ PowerLaw law_through(const std::vector<int>& spp, const std::vector<double>& err
 }
 
 struct Settings {
-  int reference_spp = 1024, pairs = 3, floor_spp = 512;
+  int reference_spp = 1024, pairs = 3, floor_spp = 512, timed_spp = 8;
   double rel_mse = 1e-3;
-  std::vector<int> path_spp{16, 64, 256}, gi_spp{1, 2, 4, 8, 16, 32, 64, 128, 256};
+  std::vector<int> path_spp{16, 64, 256}, gi_spp{1, 2, 4, 8, 16, 32, 64, 96, 128, 256};
+};
+
+/// The last pictures of both sides whose errors were measured.
+struct Pictures {
+  Picture ours, path;
 };
 
 PowerLaw measure_path(Bench& bench, const Solved& solved, const LightPaths& paths, const Reference& reference,
-                      const std::vector<int>& counts) {
+                      const std::vector<int>& counts, Picture& last) {
   std::vector<double> errors;
   std::printf("\npath tracer   spp      relMSE   seconds\n");
   for (const int spp : counts) {
     double seconds = 0.0;
-    errors.push_back(
-        reference.error(bench.picture(solved, paths, 100u + static_cast<unsigned>(spp), spp, "path", &seconds)));
+    last = bench.picture(solved, paths, 100u + static_cast<unsigned>(spp), spp, "path", &seconds);
+    errors.push_back(reference.error(last));
     std::printf("            %5d %11.3g %9.2f\n", spp, errors.back(), seconds);
     std::fflush(stdout);
   }
@@ -162,11 +169,12 @@ struct Target {
   double error = 0.0;
 };
 
-Target choose_target(Bench& bench, const Solved& solved, const Reference& reference, const Settings& settings) {
+Target choose_target(Bench& bench, const Solved& solved, const Reference& reference, const Settings& settings,
+                     Picture& last) {
   const auto error_at = [&](int spp) {
     double seconds = 0.0;
-    const double error =
-        reference.error(bench.picture(solved, {}, 200u + static_cast<unsigned>(spp), spp, "ours", &seconds));
+    last = bench.picture(solved, {}, 200u + static_cast<unsigned>(spp), spp, "ours", &seconds);
+    const double error = reference.error(last);
     std::printf("            %5d %11.3g %9.2f\n", spp, error, seconds);
     std::fflush(stdout);
     return error;
@@ -184,11 +192,11 @@ Target choose_target(Bench& bench, const Solved& solved, const Reference& refere
 }
 
 void print_ours(const char* what, const Seconds& s) {
-  std::printf("  %s: V-map %.2f + exchange %.2f + photons %.2f + other %.2f + pixels %.2f = %.2f s", what, s.vmap,
+  std::printf("  %s: V-map %.2f + exchange %.2f + photons %.2f + other %.2f + pixels %.2f = %.2f s\n", what, s.vmap,
               s.fmm, s.photon, s.other, s.pixels, s.all());
 }
 
-/// What a side's pictures cost beside the light, seconds a pixel, and the light.
+/// What a side's pictures cost: the light, and the pixels.
 struct Cost {
   std::vector<double> light, pixels, all;
   void add(const Seconds& s) {
@@ -196,8 +204,8 @@ struct Cost {
     pixels.push_back(s.pixels);
     all.push_back(s.all());
   }
-  /// Of a picture of so many times the pixels, as the medians say.
-  double at(double times) const { return median(light) + times * median(pixels); }
+  /// Of a picture of this share of the pixels, as the medians say.
+  double at(double share) const { return median(light) + share * median(pixels); }
 };
 
 std::vector<double> quotients(const std::vector<double>& a, const std::vector<double>& b) {
@@ -207,51 +215,44 @@ std::vector<double> quotients(const std::vector<double>& a, const std::vector<do
   return quotients;
 }
 
-/// The last pictures of both sides.
-struct Pictures {
-  Picture ours, path;
-};
-
-Pictures measure_pairs(Bench& bench, const LightPaths& paths, const Reference& reference, const Target& target,
-                       int path_spp, int pairs, double own_size) {
-  std::printf("\n%d pairs: ours of %d samples a pixel against %d of the path tracer's\n", pairs, target.spp, path_spp);
+/// `small`: the share of the pixels that the pictures had whose errors were measured.
+void measure_pairs(Bench& bench, const LightPaths& paths, const Target& target, int path_spp, const Settings& settings,
+                   double small) {
+  std::printf("\nat the scene's own size, %d pairs: ours of %d samples a pixel, %d of the path tracer's for %d\n",
+              settings.pairs, target.spp, settings.timed_spp, path_spp);
   Cost anew, kept, path;
-  Pictures last;
-  for (int k = 0; k < pairs; ++k) {
+  for (int k = 0; k < settings.pairs; ++k) {
     const auto seed = static_cast<unsigned>(1 + k);
-    Seconds s;
     { // Its cache is empty at first, so that the V-map is made, and then holds it.
       const test::CacheFolder cache;
-      for (Cost* cost : {&anew, &kept}) {
-        const Solved solved = bench.solve(false, seed);
-        s = solved.seconds;
-        last.ours = bench.picture(solved, {}, seed, target.spp, "ours", &s.pixels);
-        cost->add(s);
-        print_ours(cost == &anew ? "V-map anew" : "V-map kept", s);
-        std::printf(cost == &anew ? ", relMSE %.3g\n" : "\n", reference.error(last.ours));
-      }
+      const Solved first = bench.solve(false, seed);
+      Seconds s = first.seconds;
+      bench.picture(first, {}, seed, target.spp, "ours", &s.pixels);
+      anew.add(s);
+      print_ours("V-map anew", s);
+      const double pixels = s.pixels;
+      s = bench.solve(false, seed).seconds;
+      s.pixels = pixels;
+      kept.add(s);
+      print_ours("V-map kept", s);
     }
-    const Solved solved = bench.solve(true, seed);
-    s = solved.seconds;
-    last.path = bench.picture(solved, paths, seed, path_spp, "path", &s.pixels);
-    const double error = reference.error(last.path);
-    // What the error is off the target is made up for by the law 1/spp.
-    s.pixels *= error / target.error;
+    const Solved traced = bench.solve(true, seed);
+    Seconds s = traced.seconds;
+    bench.picture(traced, paths, seed, settings.timed_spp, "path", &s.pixels);
+    std::printf("  path tracer: %.2f s of %d samples a pixel", s.pixels, settings.timed_spp);
+    s.pixels *= static_cast<double>(path_spp) / settings.timed_spp;
     path.add(s);
-    std::printf("  path tracer: relMSE %.3g; %.2f s to %.3g\n", error, s.all(), target.error);
+    std::printf(", %.1f s of %d\n", s.all(), path_spp);
     std::fflush(stdout);
   }
   const auto conclude = [&](const char* what, const Cost& ours) {
-    std::printf(
-        "%s: ours %.2f s, path tracer %.2f s: %.1f x (median of pairs); at the scene's own size, %.1f times the "
-        "pixels, the same rates would give %.1f x\n",
-        what, median(ours.all), median(path.all), median(quotients(path.all, ours.all)), own_size,
-        path.at(own_size) / ours.at(own_size));
+    std::printf("%s: ours %.2f s, path tracer %.1f s: %.1f x (median of pairs); of the small picture %.1f x\n", what,
+                median(ours.all), median(path.all), median(quotients(path.all, ours.all)),
+                path.at(small) / ours.at(small));
   };
   std::printf("\nto relMSE %.3g\n", target.error);
   conclude("V-map made anew (a first picture)", anew);
   conclude("V-map from the cache (a second picture of the scene)", kept);
-  return last;
 }
 
 /// Where the errors are: a line for pixels that `in` is true of.
@@ -290,10 +291,10 @@ void print_regions(const Bench& bench, const Pictures& pictures, const Reference
   print_region("a tenth by caustics", pictures, reference, [&](std::size_t i) { return caustic[i] > 0.1f * all[i]; });
 }
 
-/// False when the sides cannot be compared.
-bool measure(Session& session, const Scene& scene, double own_size, const LightPaths& paths, const Settings& settings,
-             const std::string& folder) {
-  Bench bench(session, scene, folder);
+/// False when the sides cannot be compared. `small`: the scene with pictures of which a reference is affordable.
+bool measure(Session& session, const Scene& scene, const Scene& small, const LightPaths& paths,
+             const Settings& settings, const std::string& folder) {
+  Bench bench(session, small, folder);
   const Solved traced = bench.solve(true, 1), solved = bench.solve(false, 1);
   bench.picture(traced, paths, 1, 1, "path"); // builds the kernels
   bench.picture(solved, {}, 1, 1, "ours");
@@ -301,12 +302,15 @@ bool measure(Session& session, const Scene& scene, double own_size, const LightP
                             bench.picture(traced, paths, 12, settings.reference_spp, "reference_b"));
   std::printf("reference: twice %d samples a pixel; its own relMSE %.2g is taken off\n", settings.reference_spp,
               reference.own_noise());
-  const PowerLaw law = measure_path(bench, traced, paths, reference, settings.path_spp);
+  Pictures last;
+  const PowerLaw law = measure_path(bench, traced, paths, reference, settings.path_spp, last.path);
   std::printf("it falls as 1/spp^%.2f\n", law.exponent);
-  const Target target = choose_target(bench, solved, reference, settings);
-  const int path_spp = std::max(1, static_cast<int>(std::lround(law.spp_for(target.error))));
-  const Pictures last = measure_pairs(bench, paths, reference, target, path_spp, settings.pairs, own_size);
+  const Target target = choose_target(bench, solved, reference, settings, last.ours);
   print_regions(bench, last, reference);
+  const int path_spp = std::max(1, static_cast<int>(std::lround(law.spp_for(target.error))));
+  const auto pixels = [](const Scene& s) { return static_cast<double>(s.render.width) * s.render.height; };
+  Bench own(session, scene, folder);
+  measure_pairs(own, paths, target, path_spp, settings, pixels(small) / pixels(scene));
   const PictureDifference off = difference(last.ours, "ours", reference.mean(), "reference");
   bool right = true;
   if (std::fabs(law.exponent - 1.0) > 0.2) {
@@ -327,17 +331,19 @@ int main(int argc, char** argv) {
   CLI::App app{"Time to equal error: our picture against the path tracer's over the same splats"};
   Settings settings;
   std::string file = "scenes/demo/room.toml", size = "160x120", list, folder;
-  std::vector<std::string> overrides{"caustics.feedback=true", "caustics.indirect=true"};
+  std::vector<std::string> overrides;
   app.add_option("scene", file, "scene file");
-  app.add_option("--size", size, "WIDTHxHEIGHT of the pictures");
+  app.add_option("--size", size, "WIDTHxHEIGHT of the pictures whose errors are measured");
   app.add_option("--pairs", settings.pairs, "measurements of each side")->check(CLI::Range(1, 100));
   app.add_option("--rel-mse", settings.rel_mse, "the error to reach")->check(CLI::PositiveNumber);
   app.add_option("--reference-spp", settings.reference_spp, "samples of each half of the reference");
   app.add_option("--path-spp", settings.path_spp, "at which the path tracer's error is measured")->delimiter(',');
   app.add_option("--spp", settings.gi_spp, "of ours to choose from, rising")->delimiter(',');
   app.add_option("--floor-spp", settings.floor_spp, "of ours, for the error that samples do not lower");
+  app.add_option("--timed-spp", settings.timed_spp, "of the path tracer, timed at the scene's own size")
+      ->check(CLI::PositiveNumber);
   app.add_option("--paths", list, "classes of light paths that the path tracer takes, as of pointgi render; all");
-  app.add_option("--set", overrides, "key.path=value of the scene, instead of caustics.feedback and .indirect = true");
+  app.add_option("--set", overrides, "key.path=value of the scene");
   app.add_option("--output", folder, "folder that keeps the last pictures");
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::warn);
@@ -351,8 +357,7 @@ int main(int argc, char** argv) {
     Session session(choose_device(""));
     std::printf("device: %s (%s)\nscene: %s, %s%s%s\n", session.info().name.c_str(), session.info().platform.c_str(),
                 file.c_str(), size.c_str(), list.empty() ? "" : ", paths ", list.c_str());
-    const double times = static_cast<double>(own.render.width) * own.render.height / (double{1} * width * height);
-    return measure(session, load_any(file, overrides), times, light_paths(list, own.render.max_depth), settings,
+    return measure(session, own, load_any(file, overrides), light_paths(list, own.render.max_depth), settings,
                    folder.empty() ? temporary.file("") : folder)
                ? 0
                : 1;

@@ -153,3 +153,55 @@ TEST_CASE("no photons") {
   CHECK(traced.stored.empty());
   CHECK(traced.ledger.aimed == 0);
 }
+
+namespace {
+
+/// A ball of radius 0.5 about the origin in a closed cube of side 4.
+std::string ball_in_cube(const std::string& material) {
+  std::string text = "version = 1\n[[light]]\ntype = \"point\"\nposition = [0.0, 1.5, 0.0]\n"
+                     "power_w = [1.0, 1.0, 1.0]\n[[material]]\nname = \"ball\"\n" +
+                     material +
+                     "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+                     "[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.5\nmaterial = \"ball\"\n"
+                     "spacing = 0.03\n";
+  const char* faces[6][3] = {
+      {"-2.0, -2.0, -2.0", "0.0, 0.0, 4.0", "4.0, 0.0, 0.0"}, {"-2.0, 2.0, -2.0", "4.0, 0.0, 0.0", "0.0, 0.0, 4.0"},
+      {"-2.0, -2.0, -2.0", "4.0, 0.0, 0.0", "0.0, 4.0, 0.0"}, {"-2.0, -2.0, 2.0", "0.0, 4.0, 0.0", "4.0, 0.0, 0.0"},
+      {"-2.0, -2.0, -2.0", "0.0, 4.0, 0.0", "0.0, 0.0, 4.0"}, {"2.0, -2.0, -2.0", "0.0, 0.0, 4.0", "0.0, 4.0, 0.0"}};
+  for (const auto& face : faces)
+    text += std::string("[[shape]]\ntype = \"quad\"\ncorner = [") + face[0] + "]\nedge_u = [" + face[1] +
+            "]\nedge_v = [" + face[2] + "]\nmaterial = \"white\"\nspacing = 0.2\n";
+  return text;
+}
+
+} // namespace
+
+TEST_CASE("photons from surfaces carry what a ball receives, each as much as any other") {
+  const std::string materials[] = {"type = \"mirror\"\n", "type = \"glass\"\nior = 1.5\n"};
+  for (const std::string& material : materials) {
+    CAPTURE(material);
+    const PhotonScene scene(ball_in_cube(material));
+    std::vector<float> radiosity;
+    double area = 0.0; // of the ball's splats
+    for (const Splat& s : scene.points()) {
+      const bool white = scene.lighting.materials[static_cast<std::size_t>(s.material)].type == MATERIAL_DIFFUSE;
+      if (!white) area += double{s.area};
+      radiosity.insert(radiosity.end(), {white ? 1.0f : 0.0f, white ? 2.0f : 0.0f, 0.0f});
+    }
+    const auto never = [] { return false; };
+    const TracedPhotons traced =
+        send_photons_from_surfaces(session(), scene.pools, scene.variant, scene.lighting, radiosity, scene.points(),
+                                   *scene.field, 40000, scene.placed.frame.side, {never, {}});
+    // Rays along the ball miss it on their way back: its discs stick out. Of glass, half look inwards, at glass.
+    CHECK(traced.ledger.emitted_power[0] == Approx(area).epsilon(0.01));
+    CHECK(traced.ledger.emitted_power[1] == Approx(2.0 * area).epsilon(0.01));
+    CHECK(traced.ledger.emitted_power[2] == 0.0);
+    double least = 1e30, most = 0.0;
+    for (const Photon& p : traced.stored) {
+      least = std::min(least, double{p.power[0]});
+      most = std::max(most, double{p.power[0]});
+    }
+    REQUIRE(traced.stored.size() > 10000);
+    CHECK(most <= 1.01 * least); // shares are rounded to 2^-24
+  }
+}

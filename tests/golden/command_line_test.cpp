@@ -115,8 +115,9 @@ TEST_CASE("a mirror adds the stages normals and photon, and the channels of thei
     return json_of(folder.file("s.json"));
   };
   const auto whole = stats_of(" --set caustics.photons=2000");
-  CHECK(names_of(whole["stages"], true) ==
-        std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "normals", "photon", "render", "image"});
+  CHECK(names_of(whole["stages"], true) == std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm",
+                                                                    "normals", "photon", "photon", "render",
+                                                                    "image"}); // sent, then what they bring to points
   CHECK(whole["photons"]["stored"] > 0);
   for (const char* channel : {"Diffuse.G", "Specular.G", "Caustic.G"})
     CHECK(read_exr(folder.file("x.exr")).channels.count(channel) == 1);
