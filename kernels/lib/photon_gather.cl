@@ -273,19 +273,21 @@ static inline void walk_photons(PhotonPool pool, __constant GatherParams* params
   draw_bound(near, k, 0u);
 }
 
-/* As walk_photons, from a guess of the bound: with luck everything farther is passed by from the beginning. */
+/* As walk_photons, from a bound that passes by everything farther from the beginning: first one that is hoped for, then, if
+ * too few are nearer, one that is as good as sure, then the largest there is. */
 static inline void nearest_photons(PhotonPool pool, __constant GatherParams* params, GatherPlace place, uint k,
-                                   float guess2, NearPhotons* near) {
+                                   float hope2, float guess2, NearPhotons* near) {
   /* Finite: what arrives at the back is infinitely far, and would never be thrown out. */
   const float most2 = min(params->radius2, FLT_MAX);
-  near->within2 = min(guess2, most2);
+  guess2 = min(guess2, most2);
+  near->within2 = min(hope2, guess2);
   for (;;) {
     const float begun = near->within2;
     near->count = near->within = near->fresh = 0u;
     walk_photons(pool, params, place, k, near);
     if (near->within + near->fresh >= k || begun >= most2)
       break;
-    near->within2 = most2;
+    near->within2 = begun < guess2 ? guess2 : most2;
   }
 }
 

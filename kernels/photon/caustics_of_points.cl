@@ -28,7 +28,7 @@ __kernel void caustics_of_points(const __global PhotonNode* nodes, const __globa
   const PhotonPool photons = {nodes, buckets}, areas = {area_nodes, area_buckets};
   const GatherPlace place = {points[2u * i].xyz, points[2u * i + 1u].xyz};
   NO_PHOTONS_YET(near);
-  nearest_photons(photons, params, place, params->k, INFINITY, &near);
+  nearest_photons(photons, params, place, params->k, INFINITY, INFINITY, &near);
   const bool enough = near.within + near.fresh >= params->k;
   const float bound2 = enough ? near.within2 : params->radius2;
   const float share = smoothstep(STORED_FROM, STORED_ONLY, sqrt(bound2) / radius);

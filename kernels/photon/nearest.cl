@@ -3,6 +3,9 @@
  * past `count` do nothing. */
 #include "lib/photon_gather.cl"
 
+/* Neighbours' bounds seldom differ by more than this; where they do, the walk begins again. */
+#define HOPED_GROWTH 1.2f
+
 /* Of places[i].xyz the k = params->k nearest photons: distance2[k * i ...] and photon[k * i ...], the photon's number in the
  * order of the buckets, in no order; found[i] of them are written. k is at most GATHER_MOST. */
 __kernel void nearest_of_places(const __global PhotonNode* nodes, const __global float* buckets,
@@ -11,12 +14,14 @@ __kernel void nearest_of_places(const __global PhotonNode* nodes, const __global
   const PhotonPool pool = {nodes, buckets};
   const uint k = params->k, first = PHOTON_PLACES_AT_ONCE * get_global_id(0);
   NO_PHOTONS_YET(near);
-  float guess2 = INFINITY;
+  float guess2 = INFINITY, hope2 = INFINITY;
   for (uint i = first; i < min(count, first + PHOTON_PLACES_AT_ONCE); ++i) {
     const GatherPlace place = {places[i].xyz, (float3)(0.0f)};
-    if (i > first)
+    if (i > first) {
+      hope2 = HOPED_GROWTH * near.within2;
       guess2 = bound_from(near.within2, distance(place.position, places[i - 1u].xyz));
-    nearest_photons(pool, params, place, k, guess2, &near);
+    }
+    nearest_photons(pool, params, place, k, hope2, guess2, &near);
     const size_t to = (size_t)k * i;
     const bool too_many = near.within > k; /* equally far: the nearer ones, then those at the bound while there is room */
     uint kept = 0u;

@@ -78,7 +78,7 @@ typedef struct PhotonNode {
 #define PHOTON_FARTHEST2 1e30f
 
 /* Places in a row that a work-item of nearest_of_places takes: each tells the next where to look. */
-#define PHOTON_PLACES_AT_ONCE 16
+#define PHOTON_PLACES_AT_ONCE 64
 
 /* How photons are gathered. */
 typedef struct GatherParams {

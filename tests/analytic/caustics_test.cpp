@@ -249,9 +249,38 @@ TEST_CASE("with caustics.indirect mirrors throw the light of diffuse surfaces, t
   CHECK(added == Approx(truth).epsilon(0.06));
 }
 
+namespace {
+
+/// A closed cube of side 2, one wall of it a mirror, a lamp under the ceiling, seen from inside.
+std::string mirror_room(const std::string& spp, const std::string& caustics) {
+  std::string text = "version = 1\n[render]\nsize = [24, 18]\nspp = " + spp +
+                     "\n[camera]\nposition = [0.0, 0.9, 0.8]\nlook_at = [0.0, 0.8, 0.0]\nfov_deg = 75.0\n" +
+                     "[caustics]\n" + caustics +
+                     "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\n"
+                     "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.7, 0.7, 0.7]\n"
+                     "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\n"
+                     "emission = [5.0, 5.0, 5.0]\n"
+                     "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 1.9, 0.0]\nnormal = [0.0, -1.0, 0.0]\n"
+                     "radius = 0.4\nmaterial = \"lamp\"\nspacing = 0.01\n";
+  const char* walls[6][3] = {
+      {"-1.0, 0.0, -1.0", "0.0, 2.0, 0.0", "0.0, 0.0, 2.0"}, {"1.0, 0.0, -1.0", "0.0, 0.0, 2.0", "0.0, 2.0, 0.0"},
+      {"-1.0, 0.0, -1.0", "0.0, 0.0, 2.0", "2.0, 0.0, 0.0"}, {"-1.0, 2.0, -1.0", "2.0, 0.0, 0.0", "0.0, 0.0, 2.0"},
+      {"-1.0, 0.0, -1.0", "2.0, 0.0, 0.0", "0.0, 2.0, 0.0"}, {"-1.0, 0.0, 1.0", "0.0, 2.0, 0.0", "2.0, 0.0, 0.0"}};
+  for (const auto& wall : walls)
+    text += std::string("[[shape]]\ntype = \"quad\"\ncorner = [") + wall[0] + "]\nedge_u = [" + wall[1] +
+            "]\nedge_v = [" + wall[2] + "]\nspacing = 0.05\nmaterial = \"" + (&wall == walls ? "mirror" : "white") +
+            "\"\n";
+  return text;
+}
+
+} // namespace
+
 TEST_CASE("with both, light goes round between surfaces and mirrors until nothing is left out") {
-  const Picture picture = render_text(indirect_scene("64", "photons = 1000000\nfeedback = true\nindirect = true\n"));
-  const double truth = traced_mean("", "4096"), ours = mean(picture, "G");
+  const double truth = mean(
+      render_text(mirror_room("1024", "photons = 0\n"), [](RenderOptions& options) { options.integrator = "path"; }),
+      "G");
+  const double ours = mean(render_text(mirror_room("64", "photons = 400000\nfeedback = true\nindirect = true\n")), "G");
   CAPTURE(ours, truth);
-  CHECK(ours == Approx(truth).epsilon(0.01));
+  // A single round leaves 19 % out. The lamp's rims, which paths meet, are finer than elsewhere: 0.2 % of the light.
+  CHECK(ours == Approx(truth).epsilon(0.007));
 }
