@@ -56,8 +56,9 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
                            film_, number(x), number(y), number(columns), number(rows), number(first_sample));
   };
   const auto with_photons = [&](const auto&... pools) {
-    return photons_ != nullptr ? shade(pools..., photons_->nodes, photons_->buckets, photons_->params, photons_->at_points)
-                               : shade(pools...);
+    return photons_ != nullptr
+               ? shade(pools..., photons_->nodes, photons_->buckets, photons_->params, photons_->at_points)
+               : shade(pools...);
   };
   const auto with_field = [&](const auto&... pools) {
     return normal_field_ != nullptr ? with_photons(pools..., *normal_field_) : with_photons(pools...);
