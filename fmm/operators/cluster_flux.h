@@ -11,6 +11,9 @@ namespace pointgi {
 struct FluxSides {
   std::vector<std::uint32_t> begin; ///< cluster k has the fluxes [begin[k], begin[k + 1]); one more than clusters
   std::vector<std::uint8_t> side;   ///< of each flux, 0 to 5: +x, -x, +y ...; or all_sides
+  std::vector<std::uint32_t> into;  ///< of each flux, that of the cluster's parent of which it is a part; the root's: 0
+
+  bool whole(std::size_t cluster) const; ///< whether it has one flux of all its points
 };
 constexpr std::uint8_t all_sides = 6;
 

@@ -242,6 +242,8 @@ std::vector<float> add_exchange(Session& session, const DevicePools& pools, cons
   for (std::size_t i = 0; i < light.from_surfaces.size(); ++i)
     light.from_surfaces[i] += field.irradiance[i];
   light.solution.applies += field.solution.applies;
+  if (field.solution.end != SolveEnd::converged) light.solution.end = field.solution.end;
+  if (!light.map) light.rays += field.rays; // a ray a pair, again
   stages.finish(request.points.size, "points");
   report_solution(light, field.solution);
   return std::move(field.irradiance);

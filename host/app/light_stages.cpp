@@ -26,7 +26,7 @@ void add_rounds(Session& session, const DevicePools& pools, const IndirectReques
   double share = 1.0;
   for (unsigned round = 0; round < most_rounds; ++round) {
     const std::vector<float> entering =
-        add_indirect_photons(session, pools, request, *light.normal_field, sent, share, caustics, stages);
+        add_indirect_photons(session, pools, request, *light.normal_field, sent, share, round + 1, caustics, stages);
     if (!request.scene.caustics.feedback) return;
     share = first > 0.0 ? reflected_power({entering}) / first : 0.0;
     if (share < least_share) return;

@@ -10,8 +10,10 @@ namespace pointgi {
 namespace {
 
 /// Photons farther off than this share of the scene's cube do not count, where [caustics] does not say how far: what is
-/// lit so little that k photons lie farther apart gets a plain mean over that disc.
+/// lit so little that k photons lie farther apart gets a mean over that disc.
 constexpr double default_radius = 0.05;
+
+constexpr const char* interrupted_in_photon = "interrupted in the stage photon; nothing was written";
 
 /// Empty when photons are sent.
 std::string reason_against(const IndirectRequest& request, bool specular) {
@@ -28,16 +30,16 @@ std::size_t room_for(const IndirectRequest& request, const Caustics& caustics) {
   return (most_stored_photons - caustics.photons.size()) / (others ? 2 : 1);
 }
 
-/// The stage itself: `send` sends `photons` and is watched by what it is given.
+/// The stage itself: `send` sends photons and is watched by what it is given.
 template <typename Send>
-void fly(const IndirectRequest& request, long long photons, Caustics& caustics, StageLog& stages, const Send& send) {
+void fly(const IndirectRequest& request, Caustics& caustics, StageLog& stages, const Send& send) {
   stages.start("photon");
   const std::size_t room = room_for(request, caustics);
   TracedPhotons traced = [&] {
     Progress progress("photon", request.quiet);
     return send(FlightControl{request.stop, [&](double share) { progress.update(share); }, room});
   }();
-  if (traced.stopped) throw Error(ExitCode::interrupted, "interrupted in the stage photon; nothing was written");
+  if (traced.stopped) throw Error(ExitCode::interrupted, interrupted_in_photon);
   const PhotonLedger& ledger = traced.ledger;
   stages.finish(ledger.aimed, "photons", ledger.device_seconds);
   spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
@@ -45,7 +47,8 @@ void fly(const IndirectRequest& request, long long photons, Caustics& caustics, 
   if (traced.one_of > 1)
     spdlog::warn("caustics: memory is kept for {} stored photons: one of {} stays, {} times as bright; "
                  "caustics.photons = {} would keep all",
-                 room, traced.one_of, traced.one_of, photons / static_cast<long long>(traced.one_of));
+                 room, traced.one_of, traced.one_of,
+                 request.scene.caustics.photons / static_cast<long long>(traced.one_of));
   if (caustics.photons.empty())
     caustics.photons = std::move(traced.stored);
   else
@@ -70,7 +73,7 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
   if (const std::string exchange = reason_against_radiosity(request);
       settings.place && !exchange.empty() && (settings.feedback || settings.indirect))
     spdlog::warn("{}: [caustics] feedback and indirect have no effect: {}", settings.place->text(), exchange);
-  fly(request, settings.photons, caustics, stages, [&](const FlightControl& control) {
+  fly(request, caustics, stages, [&](const FlightControl& control) {
     return send_photons(session, pools, request.variant, request.lighting,
                         photon_sources(request.lighting, request.points), request.points, *normal_field, settings,
                         request.frame.side, control);
@@ -80,12 +83,14 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
 
 std::vector<float> add_indirect_photons(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                         const Buffer<cl_float4>& normal_field, View<float> radiosity, double share,
-                                        Caustics& caustics, StageLog& stages) {
-  const long long photons = std::llround(share * static_cast<double>(request.scene.caustics.photons));
+                                        std::uint32_t flight, Caustics& caustics, StageLog& stages) {
+  const long long all = request.scene.caustics.photons;
+  const long long photons = std::llround(std::min(share, 1.0) * static_cast<double>(all));
   const std::size_t before = caustics.photons.size();
-  fly(request, photons, caustics, stages, [&](const FlightControl& control) {
+  fly(request, caustics, stages, [&](const FlightControl& control) {
     return send_photons_from_surfaces(session, pools, request.variant, request.lighting, radiosity, request.points,
-                                      normal_field, static_cast<std::uint32_t>(photons), request.frame.side, control);
+                                      normal_field, static_cast<std::uint32_t>(photons), flight, request.frame.side,
+                                      control);
   });
   return irradiance_by_photons({caustics.photons.data() + before, caustics.photons.size() - before}, request.points);
 }
@@ -94,11 +99,14 @@ std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics&
                                                const IndirectRequest& request, StageLog& stages) {
   if (caustics.photons.empty()) return std::nullopt;
   stages.start("photon");
+  Progress progress("photon", request.quiet);
   const CausticSettings& settings = request.scene.caustics;
   const double radius = settings.max_radius ? *settings.max_radius / request.frame.side : default_radius;
   DevicePhotonMap map =
       upload_photon_map(session, build_photon_map(caustics.photons), static_cast<unsigned>(settings.gather_k), radius);
-  store_caustics(session, request.points, exchanging_materials(request.scene), map);
+  const bool whole = store_caustics(session, request.points, exchanging_materials(request.scene), map,
+                                    {request.stop, [&](double share) { progress.update(share); }});
+  if (!whole) throw Error(ExitCode::interrupted, interrupted_in_photon);
   stages.finish(request.points.size, "points");
   return map;
 }

@@ -16,12 +16,12 @@ struct Caustics {
 Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
                           const Buffer<cl_float4>* normal_field, StageLog& stages);
 
-/// The stage once more: `share` of caustics.photons from the diffuse surfaces, by their radiosity [points x 3, as
-/// IndirectLight] (LD+S+D), are added to those that are there. Only after a run_photon_stage that sent some; throws as
-/// it does. Returns the irradiance [points x 3] that they bring.
+/// The stage once more: `share` of caustics.photons, all at most, from the diffuse surfaces, by their radiosity [points
+/// x 3, as IndirectLight] (LD+S+D), are added to those that are there. Only after a run_photon_stage that sent some;
+/// throws as it does. Returns the irradiance [points x 3] that they bring.
 std::vector<float> add_indirect_photons(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                         const Buffer<cl_float4>& normal_field, View<float> radiosity, double share,
-                                        Caustics& caustics, StageLog& stages);
+                                        std::uint32_t flight, Caustics& caustics, StageLog& stages);
 
 /// The end of the stage: the photons as the picture gathers them, and what they bring to the points; absent where none
 /// was stored.

@@ -62,6 +62,14 @@ SceneFeatures features_of(const DeviceLighting& lighting) {
   return features;
 }
 
+/// Of the light that a splat receives, on both sides together where it has two, about how much goes on by mirror or
+/// lobe.
+double passed_on(const Material& material) {
+  if (material.type == MATERIAL_DIFFUSE) return 0.0;
+  if (material.type == MATERIAL_GLASS) return 2.0;
+  return double{*std::max_element(material.specular, material.specular + 3)};
+}
+
 auto is_specular(const DeviceLighting& lighting) {
   return [&lighting](const Splat& s) {
     return lighting.materials[static_cast<std::size_t>(s.material)].type != MATERIAL_DIFFUSE;
@@ -72,7 +80,7 @@ auto is_specular(const DeviceLighting& lighting) {
 
 void add(const PhotonLedger& ledger, PhotonLedger& to) {
   for (const auto member : {&PhotonLedger::aimed, &PhotonLedger::emitted, &PhotonLedger::stored,
-                            &PhotonLedger::absorbed, &PhotonLedger::escaped, &PhotonLedger::cut})
+                            &PhotonLedger::absorbed, &PhotonLedger::escaped, &PhotonLedger::cut, &PhotonLedger::kept})
     to.*member += ledger.*member;
   for (const auto member : {&PhotonLedger::emitted_power, &PhotonLedger::stored_power, &PhotonLedger::absorbed_power,
                             &PhotonLedger::escaped_power, &PhotonLedger::cut_power})
@@ -88,6 +96,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.start);
   cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
   RenderParams params = request.lighting.params;
+  params.seed += request.flight * 0x9e3779b9u;
   params.step_delta = static_cast<float>(request.variant.step_delta / request.side);
   std::copy_n(request.sources.environment.begin(), 3, params.environment);
   params.delta_lights = static_cast<pg_uint>(request.sources.delta.size());
@@ -166,19 +175,20 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
 
 TracedPhotons send_photons_from_surfaces(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                          const DeviceLighting& lighting, View<float> radiosity, View<Splat> points,
-                                         const Buffer<cl_float4>& normal_field, std::uint32_t photons, double side,
-                                         const FlightControl& control) {
-  const PhotonSources sources = sources_of_radiosity(
-      radiosity, points, [&](const Splat& s) { return lighting.materials[static_cast<std::size_t>(s.material)].type; });
+                                         const Buffer<cl_float4>& normal_field, std::uint32_t photons,
+                                         std::uint32_t flight, double side, const FlightControl& control) {
+  const PhotonSources sources = sources_of_radiosity(radiosity, points, [&](const Splat& s) {
+    return passed_on(lighting.materials[static_cast<std::size_t>(s.material)]);
+  });
   const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), 1, false);
   EmissionPlan plan;
   if (photons > 0 && !sources.emitters.empty()) {
     plan.aims.push_back({0, photons, AIM_EMITTERS, NO_PHOTON_LEAF, 1.0f / static_cast<float>(photons)});
     plan.photons = photons;
   }
-  return trace_photons(session, pools,
-                       {lighting, sources, leaves, plan, normal_field, variant, side, PhotonStart::from_surfaces},
-                       control);
+  PhotonRequest request{lighting, sources, leaves, plan, normal_field, variant, side, PhotonStart::from_surfaces};
+  request.flight = flight;
+  return trace_photons(session, pools, request, control);
 }
 
 std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,

@@ -48,7 +48,8 @@ struct PhotonRequest {
   TraversalVariant variant;
   double side = 1.0; ///< of the root cube, world units
   PhotonStart start = PhotonStart::aimed;
-  std::size_t batch = 0; ///< photons a launch; 0: found by the launches' times
+  std::size_t batch = 0;    ///< photons a launch; 0: found by the launches' times
+  std::uint32_t flight = 0; ///< photons of other flights have other random numbers
 };
 
 /// The same photons, and of too many the same ones kept, however they are cut into launches. Throws Error(device).
@@ -66,11 +67,11 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
                            const FlightControl& control);
 
 /// `photons` of those by which the specular splats among `points` receive the light of diffuse ones, of radiosity
-/// [points x 3, W/m², scaled]: LD+S+D. Throws as trace_photons.
+/// [points x 3, W/m², scaled]: LD+S+D. `flight`: as of PhotonRequest. Throws as trace_photons.
 TracedPhotons send_photons_from_surfaces(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                          const DeviceLighting& lighting, View<float> radiosity, View<Splat> points,
-                                         const Buffer<cl_float4>& normal_field, std::uint32_t photons, double side,
-                                         const FlightControl& control);
+                                         const Buffer<cl_float4>& normal_field, std::uint32_t photons,
+                                         std::uint32_t flight, double side, const FlightControl& control);
 
 /// Irradiance [n float4, W/m², scaled] by the map of places on surfaces, [2 n]: position, unit normal of the lit side.
 std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,

@@ -16,19 +16,19 @@ std::vector<float> irradiance_by_photons(View<Photon> photons, View<Splat> point
 }
 
 PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points,
-                                   const std::function<pg_uint(const Splat&)>& type_of) {
+                                   const std::function<double(const Splat&)>& passed_on) {
   PhotonSources sources;
   if (std::none_of(radiosity.begin(), radiosity.end(), [](float b) { return b > 0.0f; })) return sources;
   constexpr float inverse_pi = 0.31830989f;
   for (std::size_t p = 0; p < points.size; ++p) {
     const float* b = &radiosity[3 * p];
     sources.radiance.push_back({inverse_pi * b[0], inverse_pi * b[1], inverse_pi * b[2], 0.0f});
-    if (type_of(points[p]) != MATERIAL_DIFFUSE && points[p].area > 0.0f)
+    if (passed_on(points[p]) > 0.0 && points[p].area > 0.0f)
       sources.emitters.push_back({static_cast<pg_uint>(p), 0.0f});
   }
   accumulate_shares(sources.emitters, [&](const Emitter& emitter) {
     const Splat& splat = points[emitter.point];
-    return (type_of(splat) == MATERIAL_GLASS ? 2.0 : 1.0) * splat.area;
+    return passed_on(splat) * splat.area;
   });
   return sources;
 }

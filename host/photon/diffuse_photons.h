@@ -10,10 +10,10 @@ namespace pointgi {
 /// splat's effective area. All of their power is in it, whatever they make of a place between splats.
 std::vector<float> irradiance_by_photons(View<Photon> photons, View<Splat> points);
 
-/// What kernels/photon/emit_from_surfaces.cl starts from: for emitters the specular splats, by their areas, those of
-/// glass by both sides'; for radiance B/pi of all points, of radiosity B [points x 3, W/m², scaled]. No emitters where
-/// all are dark or none is specular. `type_of`: MATERIAL_... of a splat.
+/// What kernels/photon/emit_from_surfaces.cl starts from: for emitters the splats of which passed_on(splat) is above 0,
+/// by that times their areas: about what goes on by them; for radiance B/pi of all points, of radiosity B [points x 3,
+/// W/m², scaled]. No emitters where all are dark.
 PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points,
-                                   const std::function<pg_uint(const Splat&)>& type_of);
+                                   const std::function<double(const Splat&)>& passed_on);
 
 } // namespace pointgi

@@ -65,8 +65,8 @@ void fill_bucket(const Photon* photons, std::size_t count, float* words) {
       words[a * PHOTON_LANES + lane] = there ? photons[lane].position[a] : PHOTON_NOWHERE;
       words[(4 + a) * PHOTON_LANES + lane] = there ? photons[lane].power[a] : 0.0f;
     }
-    const pg_uint direction = there ? photons[lane].inward : 0u;
-    std::memcpy(&words[3 * PHOTON_LANES + lane], &direction, sizeof direction);
+    const pg_uint inward = there ? photons[lane].inward : 0u;
+    std::memcpy(&words[3 * PHOTON_LANES + lane], &inward, sizeof inward);
   }
 }
 

@@ -19,7 +19,7 @@ struct PhotonMap {
 /// Throws std::invalid_argument where a position is not finite.
 PhotonMap build_photon_map(View<Photon> photons);
 
-/// A unit direction as Photon::direction has it, and back (to a five-hundredth).
+/// A unit direction as Photon::inward has it, and back (to a five-hundredth).
 pg_uint packed_direction(const float direction[3]);
 void unpack_direction(pg_uint packed, float direction[3]);
 

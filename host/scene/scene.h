@@ -137,7 +137,7 @@ struct CausticSettings {
   std::optional<double>
       max_radius;        ///< world units: photons farther off do not count; absent: a part of the scene's size
   bool feedback = false; ///< LS+D+: diffuse surfaces pass on what photons bring them
-  bool indirect = false; ///< LD+S+D: diffuse surfaces send photons, too
+  bool indirect = false; ///< LD+S+D: photons of the light that specular surfaces get from diffuse ones, too
   std::optional<SourcePlace> place;
 };
 

@@ -11,12 +11,14 @@
 
 /* caustics[i].w: share of the irradiance at point i that is taken from the points; caustics[i].xyz: that much of it, [W/m2,
  * scaled as RenderParams]. points[2 i]: position and radius of the disc, 0 for one that shows none; points[2 i + 1].xyz:
- * its unit normal. Splats with an area for power, flying against their normals, are the photons of the second map: power
- * over area, weighted alike, has no need of a surface that is flat, nor of one that goes on, as far as the photons lie. */
+ * its unit normal. Splats with an area for power are the photons of the second map: power over area, weighted alike, has no
+ * need of a surface that is flat, nor of one that goes on, as far as the photons lie. Where they lie farther out than
+ * `farthest` radii, too many splats would have to be added up: there the picture gathers over a disc. */
 __kernel void caustics_of_points(const __global PhotonNode* nodes, const __global float* buckets,
                                  __constant GatherParams* params, const __global PhotonNode* area_nodes,
                                  const __global float* area_buckets, __constant GatherParams* area_params,
-                                 const __global float4* points, __global float4* caustics, uint first, uint count) {
+                                 const __global float4* points, __global float4* caustics, float farthest, uint first,
+                                 uint count) {
   const uint i = first + get_global_id(0);
   if (i >= count)
     return;
@@ -27,11 +29,12 @@ __kernel void caustics_of_points(const __global PhotonNode* nodes, const __globa
   }
   const PhotonPool photons = {nodes, buckets}, areas = {area_nodes, area_buckets};
   const GatherPlace place = {points[2u * i].xyz, points[2u * i + 1u].xyz};
+  const uint k = max(params->k, 2u); /* the farthest of them has no weight */
   NO_PHOTONS_YET(near);
-  nearest_photons(photons, params, place, params->k, INFINITY, INFINITY, &near);
-  const bool enough = near.within + near.fresh >= params->k;
-  const float bound2 = enough ? near.within2 : params->radius2;
-  const float share = smoothstep(STORED_FROM, STORED_ONLY, sqrt(bound2) / radius);
+  nearest_photons(photons, params, place, k, INFINITY, INFINITY, &near);
+  const bool enough = near.within + near.fresh >= k;
+  const float bound2 = enough ? near.within2 : params->radius2, radii = sqrt(bound2) / radius;
+  const float share = radii < farthest ? smoothstep(STORED_FROM, STORED_ONLY, radii) : 0.0f;
   float3 irradiance = (float3)(0.0f);
   if (share > 0.0f && near.count > 0u) {
     const float area = power_within(areas, area_params, place, bound2).x;

@@ -1,4 +1,5 @@
-/* Photons from the lights by way of specular surfaces to diffuse ones: LS+D (method.md section 5).
+/* Photons from the lights by way of specular surfaces to diffuse ones, LS+D, or where FROM_SURFACES from diffuse surfaces,
+ * LD+S+D (method.md section 5).
  * NDRange: 1-D, a work-item a photon, padded; work-item i follows photon first + i, for i < count, and writes flights[i].
  * A photon depends on its number alone, not on how they are cut into launches. aims, in the order of their photons,
  * aim_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER or FROM_SURFACES, any leaf will do for a
@@ -34,6 +35,13 @@ static inline void store3(float3 v, __global float* to) {
   to[1] = v.y;
   to[2] = v.z;
 }
+
+/* The number of the first ray's bounces: one that looks for light is none. */
+#ifdef FROM_SURFACES
+#define FIRST_RAY 0xffffffffu
+#else
+#define FIRST_RAY 0u
+#endif
 
 static inline bool is_dark(float3 power) { return !(power.x > 0.0f || power.y > 0.0f || power.z > 0.0f); }
 
@@ -73,9 +81,8 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   const __global PhotonAim* aim = aims + aim_of(aims, aim_count, first + item);
   const PhotonSource from = {{params, materials, delta_lights, emitters}, radiance, leaves, leaf_splats};
   SampleId id = {(uint2)(first + item, 0x20000000u), 0u, params->seed, 0u};
-  float rays = 0.0f;
 #ifdef FROM_SURFACES
-  const Emission e = emit_from_surfaces(POOL_ARGS, from, aim, first + item - aim->first, id, &rays);
+  const Emission e = look_for_light(POOL_ARGS, from, aim, first + item - aim->first, id);
 #else
   const Emission e = emit_photon(POOL_ARGS, from, aim, first + item - aim->first, id);
 #endif
@@ -84,7 +91,8 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   Ray ray = e.ray;
   ShadowEnds ends = e.ends;
   Media media = in_air();
-  uint end = PHOTON_ASIDE, bounces = 0u, splat = NO_SPLAT;
+  uint end = PHOTON_ASIDE, bounces = FIRST_RAY, splat = NO_SPLAT;
+  float rays = 0.0f;
 #ifdef HAS_GLASS
   float set_out_in = 0.0f; /* index of what the photon set out in, when it has passed through glass: only then it is known */
 #endif
@@ -92,7 +100,17 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     Surface s;
     Scatter scatter;
     const Hit hit = trace_closest_from(POOL_ARGS, ray, ends);
-    if (!blended_surface(POOL_ARGS, ray, ends, hit, &s, &rays)) {
+    const bool met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &rays);
+#ifdef FROM_SURFACES
+    if (bounces == FIRST_RAY) { /* one place traces it, too: the walk stands once in the code */
+      if (!met || !s.front)
+        break;
+      power *= radiance[s.splat].xyz;
+      turn_round(&s, &ray, &ends);
+      continue;
+    }
+#endif
+    if (!met) {
       end = bounces > 0u ? PHOTON_ESCAPED : PHOTON_ASIDE;
       break;
     }

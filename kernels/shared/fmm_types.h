@@ -38,8 +38,9 @@ typedef struct FmmCluster {
   pg_uint parent;      /* bytes 16-19: the root is its own */
 } FmmCluster;
 
-/* What a cluster is as one flux vector a colour (MID). Which side it shines to is judged by the flux when the linear
- * operator was frozen; an iteration that is not frozen has it equal to `flux`. */
+/* What the points of a cluster that face one side, or all, are as one flux vector a colour (MID). Which side it shines
+ * to is judged by the flux when the linear operator was frozen; an iteration that is not frozen has it equal to `flux`.
+ */
 typedef struct FmmFlux {
   float centre[3];         /* bytes 0-11: centroid weighted by flux */
   float flux[FMM_VALUES];  /* bytes 12-47: sum of B A n, per colour */

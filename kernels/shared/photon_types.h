@@ -70,7 +70,7 @@ typedef struct PhotonNode {
   float high[3][PHOTON_CHILDREN]; /* bytes 96-191 */
 } PhotonNode;
 
-/* A bucket in 32-bit words, a lane a photon: x, y, z, direction, then power red, green, blue. Lanes without a photon
+/* A bucket in 32-bit words, a lane a photon: x, y, z, inward, then power red, green, blue. Lanes without a photon
  * stand at PHOTON_NOWHERE. */
 #define PHOTON_WORDS 7
 #define PHOTON_BUCKET_WORDS (PHOTON_WORDS * PHOTON_LANES)

@@ -7,7 +7,7 @@ namespace pointgi {
 
 enum class LinkKind : std::uint8_t {
   far,  ///< well separated and wholly facing: expansions (M2L); partly visible, as mid
-  mid,  ///< little light, facing mixed: the source as one flux vector, both clamps at each receiver
+  mid,  ///< little light, facing mixed: the source as a flux vector a side, both clamps at each receiver
   near_ ///< leaf pairs: points with points, clamped
 };
 

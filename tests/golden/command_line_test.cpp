@@ -119,6 +119,7 @@ TEST_CASE("a mirror adds the stages normals and photon, and the channels of thei
                                                                     "normals", "photon", "photon", "render",
                                                                     "image"}); // sent, then what they bring to points
   CHECK(whole["photons"]["stored"] > 0);
+  CHECK(whole["photons"]["kept"] == whole["photons"]["stored"]);
   for (const char* channel : {"Diffuse.G", "Specular.G", "Caustic.G"})
     CHECK(read_exr(folder.file("x.exr")).channels.count(channel) == 1);
   CHECK(reason_of(stats_of(" --set caustics.photons=0")["stages"], "photon") == "caustics.photons = 0");

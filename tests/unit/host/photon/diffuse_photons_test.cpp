@@ -16,20 +16,20 @@ TEST_CASE("what photons bring to splats is their power over the splat's area") {
   CHECK(irradiance == expected); // one division each
 }
 
-TEST_CASE("specular splats look for light in proportion to their areas, glass on both sides") {
+TEST_CASE("specular splats look for light in proportion to their areas and to what they pass on") {
   std::vector<Splat> points(4);
-  const pg_uint types[] = {MATERIAL_DIFFUSE, MATERIAL_MIRROR, MATERIAL_GLASS, MATERIAL_PHONG};
+  const double part[] = {0.0, 1.0, 2.0, 0.25};
   for (std::size_t p = 0; p < points.size(); ++p) {
     points[p].material = static_cast<decltype(points[p].material)>(p);
     points[p].area = p == 3 ? 4.0f : 1.0f;
   }
-  const auto type_of = [&](const Splat& s) { return types[static_cast<std::size_t>(s.material)]; };
+  const auto passed_on = [&](const Splat& s) { return part[static_cast<std::size_t>(s.material)]; };
   std::vector<float> radiosity(12);
-  CHECK(sources_of_radiosity(radiosity, points, type_of).emitters.empty());
+  CHECK(sources_of_radiosity(radiosity, points, passed_on).emitters.empty());
   radiosity[1] = 2.0f;
-  const PhotonSources sources = sources_of_radiosity(radiosity, points, type_of);
+  const PhotonSources sources = sources_of_radiosity(radiosity, points, passed_on);
   REQUIRE(sources.emitters.size() == 3);
-  const float running[] = {1.0f / 7.0f, 3.0f / 7.0f, 1.0f}; // areas 1, twice 1, 4; shares are multiples of 2^-24
+  const float running[] = {0.25f, 0.75f, 1.0f}; // 1, 2 and a quarter of 4; shares are multiples of 2^-24
   for (std::size_t e = 0; e < 3; ++e) {
     CHECK(sources.emitters[e].point == e + 1);
     CHECK(sources.emitters[e].cumulative == Approx(running[e]).margin(1e-7));
@@ -38,6 +38,6 @@ TEST_CASE("specular splats look for light in proportion to their areas, glass on
   CHECK(sources.radiance[0][1] == Approx(2.0 / 3.14159265358979).epsilon(1e-6));
   CHECK(sources.radiance[3][1] == 0.0f);
   CHECK(sources.delta.empty());
-  const auto diffuse = [](const Splat&) { return pg_uint{MATERIAL_DIFFUSE}; };
+  const auto diffuse = [](const Splat&) { return 0.0; };
   CHECK(sources_of_radiosity(radiosity, points, diffuse).emitters.empty());
 }
