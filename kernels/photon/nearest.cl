@@ -3,8 +3,9 @@
  * past `count` do nothing. */
 #include "lib/photon_gather.cl"
 
-/* Neighbours' bounds seldom differ by more than this; where they do, the walk begins again. */
+/* Neighbours' bounds seldom differ by more than this, but for those of few photons; where they do, the walk begins again. */
 #define HOPED_GROWTH 1.2f
+#define FEW_PHOTONS 16u
 
 /* Of places[i].xyz the k = params->k nearest photons: distance2[k * i ...] and photon[k * i ...], the photon's number in the
  * order of the buckets, in no order; found[i] of them are written. k is at most GATHER_MOST. */
@@ -18,7 +19,7 @@ __kernel void nearest_of_places(const __global PhotonNode* nodes, const __global
   for (uint i = first; i < min(count, first + PHOTON_PLACES_AT_ONCE); ++i) {
     const GatherPlace place = {places[i].xyz, (float3)(0.0f)};
     if (i > first) {
-      hope2 = HOPED_GROWTH * near.within2;
+      hope2 = k < FEW_PHOTONS ? INFINITY : HOPED_GROWTH * near.within2;
       guess2 = bound_from(near.within2, distance(place.position, places[i - 1u].xyz));
     }
     nearest_photons(pool, params, place, k, hope2, guess2, &near);
