@@ -1,6 +1,5 @@
 #include "fmm/operators/cluster_flux.h"
 #include "octree/parallel.h"
-#include <array>
 #include <cmath>
 
 namespace pointgi {

@@ -2,6 +2,7 @@
 #include "host/app/progress.h"
 #include "host/error.h"
 #include "host/photon/diffuse_photons.h"
+#include <algorithm>
 #include <cmath>
 #include <spdlog/spdlog.h>
 

@@ -158,20 +158,13 @@ namespace {
 
 /// A ball of radius 0.5 about the origin in a closed cube of side 4.
 std::string ball_in_cube(const std::string& material) {
-  std::string text = "version = 1\n[[light]]\ntype = \"point\"\nposition = [0.0, 1.5, 0.0]\n"
-                     "power_w = [1.0, 1.0, 1.0]\n[[material]]\nname = \"ball\"\n" +
-                     material +
-                     "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
-                     "[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.5\nmaterial = \"ball\"\n"
-                     "spacing = 0.03\n";
-  const char* faces[6][3] = {
-      {"-2.0, -2.0, -2.0", "0.0, 0.0, 4.0", "4.0, 0.0, 0.0"}, {"-2.0, 2.0, -2.0", "4.0, 0.0, 0.0", "0.0, 0.0, 4.0"},
-      {"-2.0, -2.0, -2.0", "4.0, 0.0, 0.0", "0.0, 4.0, 0.0"}, {"-2.0, -2.0, 2.0", "0.0, 4.0, 0.0", "4.0, 0.0, 0.0"},
-      {"-2.0, -2.0, -2.0", "0.0, 4.0, 0.0", "0.0, 0.0, 4.0"}, {"2.0, -2.0, -2.0", "0.0, 0.0, 4.0", "0.0, 4.0, 0.0"}};
-  for (const auto& face : faces)
-    text += std::string("[[shape]]\ntype = \"quad\"\ncorner = [") + face[0] + "]\nedge_u = [" + face[1] +
-            "]\nedge_v = [" + face[2] + "]\nmaterial = \"white\"\nspacing = 0.2\n";
-  return text;
+  return "version = 1\n[[light]]\ntype = \"point\"\nposition = [0.0, 1.5, 0.0]\npower_w = [1.0, 1.0, 1.0]\n"
+         "[[material]]\nname = \"ball\"\n" +
+         material +
+         "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+         "[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 0.5\nmaterial = \"ball\"\n"
+         "spacing = 0.03\n[[shape]]\ntype = \"box\"\nmin = [-2.0, -2.0, -2.0]\nmax = [2.0, 2.0, 2.0]\n"
+         "inward = true\nmaterial = \"white\"\nspacing = 0.2\n";
 }
 
 } // namespace
