@@ -66,13 +66,13 @@ std::string temporary_name(const std::string& target) {
 } // namespace
 
 Error output_error(const std::string& path, const std::string& action, int error_number) {
-  return Error(ExitCode::output,
+  return Error(ErrorKind::output,
                path + ": cannot " + action + ": " + std::strerror(error_number) + "; " + remedy_for(error_number));
 }
 
 AtomicFile::AtomicFile(const std::string& final_path) : final_path_(final_path) {
   if (final_path.empty() || final_path.back() == '/')
-    throw Error(ExitCode::output, "\"" + final_path + "\": not the name of a file; give one like out/picture.exr");
+    throw Error(ErrorKind::output, "\"" + final_path + "\": not the name of a file; give one like out/picture.exr");
   target_path_ = follow_link(final_path);
 
   struct stat old {};
@@ -81,12 +81,12 @@ AtomicFile::AtomicFile(const std::string& final_path) : final_path_(final_path) 
   if (replaces && S_ISDIR(old.st_mode)) throw output_error(final_path, "write the file", EISDIR);
   // As root a rename would put a plain file in the place of /dev/null.
   if (replaces && !S_ISREG(old.st_mode))
-    throw Error(ExitCode::output, final_path + ": is a device or a pipe, which cannot be written safely; "
-                                               "choose the name of a regular file");
+    throw Error(ErrorKind::output, final_path + ": is a device or a pipe, which cannot be written safely; "
+                                                "choose the name of a regular file");
   if (replaces) { // a rename asks the folder only; opening asks the file
     const int old_file = ::open(target_path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (old_file < 0)
-      throw Error(ExitCode::output, final_path + ": is write-protected; choose another name or run `chmod u+w` on it");
+      throw Error(ErrorKind::output, final_path + ": is write-protected; choose another name or run `chmod u+w` on it");
     ::close(old_file);
   }
 
@@ -118,7 +118,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 void AtomicFile::commit() {
-  if (committed_) throw Error(ExitCode::internal, final_path_ + ": committed twice");
+  if (committed_) throw Error(ErrorKind::internal, final_path_ + ": committed twice");
   // Data must be on the disk before the name points at them, else a power cut leaves an empty file.
   if (::fsync(fd_) != 0) throw output_error(final_path_, "write the file to the disk", errno);
   const int closing = fd_;

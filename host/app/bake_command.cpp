@@ -18,7 +18,7 @@ namespace {
 /// Everything that can be refused is refused here, before the work.
 Scene checked_scene(const BakeOptions& options) {
   if (!has_extension(options.output, ".ply"))
-    throw Error(ExitCode::output, options.output + ": a lit cloud is written as .ply; choose such a name");
+    throw Error(ErrorKind::output, options.output + ": a lit cloud is written as .ply; choose such a name");
   Scene scene = load_any(options.input, overrides_of(options));
   apply_quality(options.quality, scene);
   require_possible_radiosity(scene);

@@ -1,7 +1,7 @@
 #pragma once
 /// The program's commands. Each returns the exit code and throws Error otherwise; results go to stdout, the log to
 /// stderr.
-#include "host/error.h"
+#include "host/app/exit_code.h"
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +25,7 @@ struct RenderOptions : LightOptions {
   std::string size; ///< "WxH"
   std::optional<int> spp;
   std::string integrator = "pointgi"; ///< or "path": unbiased path tracing, the truth to measure others by
-  std::string paths;                  ///< of the path tracer: the classes that count (host/passes/light_paths.h)
+  std::string paths;                  ///< of the path tracer: the classes that count (host/render/light_paths.h)
   std::string trace_file;
   std::string pixel_bounds; ///< "x0,x1,y0,y1"
   std::string dump_folder;

@@ -63,8 +63,9 @@ ExitCode run_compare(const CompareOptions& options) {
                  a.full_width, a.full_height, b.full_width, b.full_height);
   if (d.not_finite > 0) spdlog::warn("{} pixels hold a NaN or an infinity and were left out", d.not_finite);
   if (d.pixels == 0)
-    throw Error(ExitCode::input, options.first + " and " + options.second +
-                                     ": no pixel is finite in both, so there is nothing to compare; render them again");
+    throw Error(ErrorKind::input,
+                options.first + " and " + options.second +
+                    ": no pixel is finite in both, so there is nothing to compare; render them again");
   if (options.json)
     print_json(options, d);
   else

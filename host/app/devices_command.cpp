@@ -1,6 +1,6 @@
 #include "host/app/commands.h"
 #include "host/cl/session.h"
-#include "host/passes/variant_list.h"
+#include "host/tune/variant_list.h"
 #include <cstdio>
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 #include "host/app/progress.h"
 #include "host/cloud/normal_field.h"
 #include "host/error.h"
-#include "host/passes/point_irradiance.h"
+#include "host/radiosity/point_irradiance.h"
 #include <algorithm>
 #include <spdlog/spdlog.h>
 
@@ -28,7 +28,7 @@ public:
   StageWatch(Session& session, const std::string& stage, const IndirectRequest& request)
       : session_(session), progress_(stage, request.quiet) {
     session_.before_launches([this, stage, stop = request.stop] {
-      if (stop()) throw Error(ExitCode::interrupted, "interrupted in the stage " + stage + "; nothing was written");
+      if (stop()) throw Error(ErrorKind::interrupted, "interrupted in the stage " + stage + "; nothing was written");
       progress_.tell(done_);
     });
   }
@@ -106,7 +106,7 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
 
 void require_possible_radiosity(const Scene& scene) {
   if (scene.radiosity.place && scene.radiosity.method == "none" && direct_light_by_radiosity(scene))
-    throw Error(ExitCode::input,
+    throw Error(ErrorKind::input,
                 scene.radiosity.place->text() +
                     ": [radiosity] direct_light = \"radiosity\" wants a method that exchanges light, but method is "
                     "\"none\"; choose another method, or \"shadow_rays\"");

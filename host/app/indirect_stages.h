@@ -1,7 +1,7 @@
 #pragma once
 /// The stages of indirect light, between the octree and the picture: which the scene needs, and what they found.
 #include "host/app/stages.h"
-#include "host/passes/radiosity.h"
+#include "host/radiosity/radiosity.h"
 #include "host/scene/frame.h"
 #include <functional>
 #include <optional>

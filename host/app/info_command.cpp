@@ -1,8 +1,8 @@
 #include "host/app/commands.h"
 #include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
-#include "host/passes/tuned.h"
 #include "host/scene/objects.h"
+#include "host/tune/tuned.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,7 +1,7 @@
 #pragma once
 /// The solution as a point cloud: what `pointgi bake` writes (interface.md).
 #include "host/app/indirect_stages.h"
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 
 namespace pointgi {
 

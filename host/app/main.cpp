@@ -56,8 +56,8 @@ void require_command(const CLI::App& app, const std::string& word) {
   }
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::string near = nearest(word, names);
-  throw Error(ExitCode::usage, "unknown command \"" + word + "\"; " +
-                                   (near.empty() ? "the commands are: " + list : "did you mean \"" + near + "\"?"));
+  throw Error(ErrorKind::usage, "unknown command \"" + word + "\"; " +
+                                    (near.empty() ? "the commands are: " + list : "did you mean \"" + near + "\"?"));
 }
 
 /// Words that no option took, the nearest option beside the first.
@@ -195,9 +195,9 @@ int run(int argc, char** argv) {
     app.exit(help);
     return code_of(ExitCode::done);
   } catch (const CLI::ExtrasError& error) {
-    throw Error(ExitCode::usage, unknown_words(app));
+    throw Error(ErrorKind::usage, unknown_words(app));
   } catch (const CLI::ParseError& error) {
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::usage,
                 std::string(error.what()) + "; `pointgi" +
                     (app.get_subcommands().empty() ? std::string() : " " + app.get_subcommands()[0]->get_name()) +
                     " --help` lists what there is");
@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0) return fail(pointgi::ExitCode::output, "stdout cannot be written; is its disk full?");
     return code;
   } catch (const pointgi::Error& error) {
-    return fail(error.code(), error.what());
+    return fail(pointgi::exit_code_of(error.kind()), error.what());
   } catch (const std::bad_alloc&) {
     return fail(pointgi::ExitCode::memory, "out of memory; use a smaller cloud or a coarser spacing");
   } catch (const std::length_error& error) { // more than 32-bit places hold

@@ -23,7 +23,7 @@ void require_outputs(const std::string& input, const Scene& scene, const std::ve
     if (output->file.empty()) continue;
     for (const std::string& in : inputs)
       if (same_file(in, output->file))
-        throw Error(ExitCode::usage,
+        throw Error(ErrorKind::usage,
                     output->by_default
                         ? output->file + " would be written, but is an input, which would be lost; name another with " +
                               output->option
@@ -31,8 +31,8 @@ void require_outputs(const std::string& input, const Scene& scene, const std::ve
                               " is an input, which would be lost; choose another name");
     for (auto other = outputs.begin(); other != output; ++other)
       if (!other->file.empty() && same_file(other->file, output->file))
-        throw Error(ExitCode::usage, std::string(output->option) + ": " + output->file + " is what " + other->option +
-                                         " writes, too; choose another name");
+        throw Error(ErrorKind::usage, std::string(output->option) + ": " + output->file + " is what " + other->option +
+                                          " writes, too; choose another name");
     const AtomicFile probe(output->file);
   }
 }

@@ -40,7 +40,7 @@ void fly(const IndirectRequest& request, Caustics& caustics, StageLog& stages, c
     Progress progress("photon", request.quiet);
     return send(FlightControl{request.stop, [&](double share) { progress.update(share); }, room});
   }();
-  if (traced.stopped) throw Error(ExitCode::interrupted, interrupted_in_photon);
+  if (traced.stopped) throw Error(ErrorKind::interrupted, interrupted_in_photon);
   const PhotonLedger& ledger = traced.ledger;
   stages.finish(ledger.aimed, "photons", ledger.device_seconds);
   spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
@@ -107,7 +107,7 @@ std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics&
       upload_photon_map(session, build_photon_map(caustics.photons), static_cast<unsigned>(settings.gather_k), radius);
   const bool whole = store_caustics(session, request.points, exchanging_materials(request.scene), map,
                                     {request.stop, [&](double share) { progress.update(share); }});
-  if (!whole) throw Error(ExitCode::interrupted, interrupted_in_photon);
+  if (!whole) throw Error(ErrorKind::interrupted, interrupted_in_photon);
   stages.finish(request.points.size, "points");
   return map;
 }

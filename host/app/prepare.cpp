@@ -1,7 +1,7 @@
 #include "host/app/prepare.h"
-#include "host/app/default_view.h"
 #include "host/cloud/input_file.h"
 #include "host/scene/merge_coincident.h"
+#include "host/view/default_view.h"
 #include <numeric>
 #include <spdlog/spdlog.h>
 

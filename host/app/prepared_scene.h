@@ -4,8 +4,8 @@
 #include "host/app/prepare.h"
 #include "host/app/stages.h"
 #include "host/passes/device_pools.h"
-#include "host/passes/tuned.h"
 #include "host/scene/lighting.h"
+#include "host/tune/tuned.h"
 #include "octree/pack/pools.h"
 
 namespace pointgi {

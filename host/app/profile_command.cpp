@@ -7,7 +7,7 @@
 #include "host/atomic_file.h"
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
-#include "host/passes/tuned.h"
+#include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -30,9 +30,9 @@ std::vector<TraversalVariant> filtered(const std::string& filter) {
     if (fits) result.push_back(v);
   }
   if (result.empty())
-    throw Error(ExitCode::usage, "--filter " + filter +
-                                     ": no variant has that in its name; `pointgi profile --list` "
-                                     "shows the names");
+    throw Error(ErrorKind::usage, "--filter " + filter +
+                                      ": no variant has that in its name; `pointgi profile --list` "
+                                      "shows the names");
   return result;
 }
 
@@ -141,8 +141,8 @@ ExitCode run_profile(const ProfileOptions& options) {
     return ExitCode::done;
   }
   if (options.input.empty())
-    throw Error(ExitCode::usage, "profile: a scene or cloud to measure on is required; `pointgi profile --help` lists "
-                                 "what there is");
+    throw Error(ErrorKind::usage, "profile: a scene or cloud to measure on is required; `pointgi profile --help` lists "
+                                  "what there is");
   catch_interrupts();
   StageLog stages;
   stages.start("scene");

@@ -1,6 +1,6 @@
 #include "host/app/profile_report.h"
 #include "host/app/stats.h"
-#include "host/passes/tuned.h"
+#include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>
 

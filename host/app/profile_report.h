@@ -2,7 +2,7 @@
 /// What `pointgi profile` tells: a table for people, the same in Markdown, everything in JSON.
 #include "host/app/stages.h"
 #include "host/cl/device.h"
-#include "host/passes/profile.h"
+#include "host/tune/profile.h"
 #include <nlohmann/json.hpp>
 
 namespace pointgi {

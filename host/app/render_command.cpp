@@ -6,7 +6,7 @@
 #include "host/app/progress.h"
 #include "host/app/stats.h"
 #include "host/app/view_warnings.h"
-#include "host/cl/binary_cache.h"
+#include "host/cache/binary_cache.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -27,7 +27,7 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
     numbers.push_back(std::stoi(part));
     at = end + 1;
   }
-  if (numbers.size() != count || at <= text.size()) throw Error(ExitCode::usage, form + ", found \"" + text + "\"");
+  if (numbers.size() != count || at <= text.size()) throw Error(ErrorKind::usage, form + ", found \"" + text + "\"");
   return numbers;
 }
 
@@ -37,7 +37,8 @@ std::vector<std::string> all_overrides_of(const RenderOptions& options) {
   if (!options.size.empty()) {
     const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
     if (size[0] < 1 || size[1] < 1)
-      throw Error(ExitCode::usage, "--size: expected a width and height of at least 1, found \"" + options.size + "\"");
+      throw Error(ErrorKind::usage,
+                  "--size: expected a width and height of at least 1, found \"" + options.size + "\"");
     overrides.push_back("render.size=[" + std::to_string(size[0]) + ", " + std::to_string(size[1]) + "]");
   }
   if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
@@ -50,7 +51,7 @@ PixelWindow window_of(const RenderOptions& options, const RenderSettings& render
                            " and 0 <= y0 < y1 <= " + std::to_string(render.height);
   const auto b = whole_numbers(options.pixel_bounds, ',', 4, form);
   if (b[0] >= b[1] || b[1] > render.width || b[2] >= b[3] || b[3] > render.height)
-    throw Error(ExitCode::usage, form + ", found \"" + options.pixel_bounds + "\"");
+    throw Error(ErrorKind::usage, form + ", found \"" + options.pixel_bounds + "\"");
   return {b[0], b[1], b[2], b[3]};
 }
 
@@ -94,7 +95,7 @@ std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) 
 
 Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path" && !options.paths.empty())
-    throw Error(ExitCode::usage, "--paths: only --integrator path can choose the light paths that count");
+    throw Error(ErrorKind::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
   Scene scene = load_any(options.input, all_overrides_of(options));
   apply_quality(options.quality, scene, options.spp.has_value());
@@ -182,7 +183,7 @@ ExitCode run_render(const RenderOptions& options) {
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
   const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
   if (!written)
-    throw Error(ExitCode::interrupted, "interrupted before the first rows were finished; nothing was written");
+    throw Error(ErrorKind::interrupted, "interrupted before the first rows were finished; nothing was written");
   warn_of_view(stats.render, scene, ready, told_of_black);
   if (!options.stats_file.empty()) {
     stats.command = "render";

@@ -2,9 +2,9 @@
 #include "host/app/indirect_stages.h"
 #include "host/app/stages.h"
 #include "host/cl/session.h"
-#include "host/passes/photon.h"
-#include "host/passes/render.h"
-#include "host/passes/tuned.h"
+#include "host/photon/trace_photons.h"
+#include "host/render/render.h"
+#include "host/tune/tuned.h"
 #include "octree/pack/pools.h"
 #include <nlohmann/json.hpp>
 

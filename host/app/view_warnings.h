@@ -2,7 +2,7 @@
 /// What black or empty pictures most often come from, said in the log.
 #include "host/app/indirect_stages.h"
 #include "host/app/prepared_scene.h"
-#include "host/passes/render.h"
+#include "host/render/render.h"
 
 namespace pointgi {
 

@@ -80,8 +80,8 @@ std::vector<Device> list_devices() {
 Device choose_device(const std::string& selector) {
   const std::vector<Device> devices = list_devices();
   if (devices.empty())
-    throw Error(ExitCode::device, "no OpenCL device was found; install your vendor's OpenCL driver, or "
-                                  "pocl-opencl-icd to run on the CPU");
+    throw Error(ErrorKind::device, "no OpenCL device was found; install your vendor's OpenCL driver, or "
+                                   "pocl-opencl-icd to run on the CPU");
   const auto first = [&](auto&& wanted) -> const Device* {
     const auto at = std::find_if(devices.begin(), devices.end(), wanted);
     return at == devices.end() ? nullptr : &*at;
@@ -104,7 +104,7 @@ Device choose_device(const std::string& selector) {
     chosen = first([&](const Device& d) { return lower(d.info.name).find(lower(selector)) != std::string::npos; });
   }
   if (chosen == nullptr)
-    throw Error(ExitCode::device, "device '" + selector + "' was not found; there is:" + listing(devices));
+    throw Error(ErrorKind::device, "device '" + selector + "' was not found; there is:" + listing(devices));
   return *chosen;
 }
 

@@ -14,15 +14,15 @@ std::string read_kernel_file(const std::string& name, const std::string& include
   if (const char* folder = std::getenv("POINTGI_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
     std::ifstream file(std::string(folder) + "/" + name);
     if (!file)
-      throw Error(ExitCode::usage, "POINTGI_KERNEL_DIR=" + std::string(folder) + ": no file " + name + included_by +
-                                       "; point it at a folder like the project's kernels/, or unset it");
+      throw Error(ErrorKind::usage, "POINTGI_KERNEL_DIR=" + std::string(folder) + ": no file " + name + included_by +
+                                        "; point it at a folder like the project's kernels/, or unset it");
     std::ostringstream text;
     text << file.rdbuf();
     return text.str();
   }
   for (const EmbeddedFile& file : embedded_kernels())
     if (file.name == name) return file.text;
-  throw Error(ExitCode::internal, "no embedded kernel file " + name + included_by);
+  throw Error(ErrorKind::internal, "no embedded kernel file " + name + included_by);
 }
 
 /// The name in `#include "name"`, or empty.

@@ -1,4 +1,4 @@
-#include "host/cl/binary_cache.h"
+#include "host/cache/binary_cache.h"
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
 #include "host/error.h"
@@ -53,9 +53,9 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
     program = cl::Program(context_, source);
     program.build(devices, all_options.c_str());
   } catch (const cl::Error& error) {
-    throw Error(ExitCode::device, "kernels/" + file + " did not compile: " + cl_error_name(error.err()) +
-                                      "\ndevice:  " + info_.name + " (" + info_.platform + ")\ndriver:  " +
-                                      info_.driver + "\noptions: " + all_options + "\n" + build_log(program, device_));
+    throw Error(ErrorKind::device, "kernels/" + file + " did not compile: " + cl_error_name(error.err()) +
+                                       "\ndevice:  " + info_.name + " (" + info_.platform + ")\ndriver:  " +
+                                       info_.driver + "\noptions: " + all_options + "\n" + build_log(program, device_));
   }
   ++compiled_;
   const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
@@ -72,7 +72,7 @@ void Session::dump(const std::string& file, const std::string& options, const st
   std::ofstream out(dump_folder_ + "/" + name);
   out << "/* clBuildProgram options: " << options << " */\n" << source;
   if (!out)
-    throw Error(ExitCode::output,
+    throw Error(ErrorKind::output,
                 dump_folder_ + ": cannot write " + name + "; choose a writable --dump-kernels folder");
 }
 

@@ -18,9 +18,9 @@ bool is_memory_error(int code) {
 [[noreturn]] void rethrow(const cl::Error& error, const DeviceInfo& info, const std::string& doing) {
   const std::string text = info.name + ": " + doing + " failed: " + cl_error_name(error.err());
   if (is_memory_error(error.err()))
-    throw Error(ExitCode::memory, text + "; the device has " + megabytes(info.memory_bytes) +
-                                      " in all; use a smaller scene, or another --device");
-  throw Error(ExitCode::device, text);
+    throw Error(ErrorKind::memory, text + "; the device has " + megabytes(info.memory_bytes) +
+                                       " in all; use a smaller scene, or another --device");
+  throw Error(ErrorKind::device, text);
 }
 
 } // namespace
@@ -53,7 +53,7 @@ cl::Kernel Session::kernel(const std::string& file, const std::string& options, 
   try {
     return cl::Kernel(built, name.c_str());
   } catch (const cl::Error& error) {
-    throw Error(ExitCode::internal, "kernels/" + file + " has no kernel " + name + ": " + cl_error_name(error.err()));
+    throw Error(ErrorKind::internal, "kernels/" + file + " has no kernel " + name + ": " + cl_error_name(error.err()));
   }
 }
 
@@ -78,9 +78,9 @@ cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
   // Zero-sized buffers do not exist in OpenCL; an unused argument still needs one.
   const std::size_t size = std::max<std::size_t>(bytes, 16);
   if (size > info_.max_allocation_bytes)
-    throw Error(ExitCode::memory, info_.name + ": a buffer of " + megabytes(size) +
-                                      " is needed, and the device gives " + megabytes(info_.max_allocation_bytes) +
-                                      " at most in one piece; use a smaller cloud, or another --device");
+    throw Error(ErrorKind::memory, info_.name + ": a buffer of " + megabytes(size) +
+                                       " is needed, and the device gives " + megabytes(info_.max_allocation_bytes) +
+                                       " at most in one piece; use a smaller cloud, or another --device");
   try {
     cl::Buffer buffer(context_, flags, size);
     account(buffer, size);
@@ -118,9 +118,9 @@ cl::ImageFormat texel_format(bool is_float) {
 
 cl::Memory Session::upload_image1d(const void* texels, std::size_t count, bool is_float) {
   if (!info_.images || count > info_.image_buffer_texels)
-    throw Error(ExitCode::device, info_.name + ": an image1d_buffer of " + std::to_string(count) +
-                                      " texels is needed, and the device gives " +
-                                      std::to_string(info_.image_buffer_texels) + "; use storage = \"buffer\"");
+    throw Error(ErrorKind::device, info_.name + ": an image1d_buffer of " + std::to_string(count) +
+                                       " texels is needed, and the device gives " +
+                                       std::to_string(info_.image_buffer_texels) + "; use storage = \"buffer\"");
   const cl::Buffer buffer = allocate_bytes(16 * count, CL_MEM_READ_ONLY);
   write_bytes(buffer, texels, 16 * count);
   try {
@@ -135,10 +135,10 @@ cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool i
   const std::size_t width = std::size_t{1} << width_log2,
                     height = std::max<std::size_t>(1, (count + width - 1) / width);
   if (!info_.images || width > info_.image2d_width || height > info_.image2d_height)
-    throw Error(ExitCode::device, info_.name + ": an image of " + std::to_string(width) + " x " +
-                                      std::to_string(height) + " texels is needed, and the device gives " +
-                                      std::to_string(info_.image2d_width) + " x " +
-                                      std::to_string(info_.image2d_height) + "; use storage = \"buffer\"");
+    throw Error(ErrorKind::device, info_.name + ": an image of " + std::to_string(width) + " x " +
+                                       std::to_string(height) + " texels is needed, and the device gives " +
+                                       std::to_string(info_.image2d_width) + " x " +
+                                       std::to_string(info_.image2d_height) + "; use storage = \"buffer\"");
   try {
     cl::Image2D image(context_, CL_MEM_READ_ONLY, texel_format(is_float), width, height);
     account(image, 16 * width * height);
@@ -168,7 +168,7 @@ std::string name_of(const cl::Kernel& kernel) {
 void check_launch(const cl::Kernel& kernel, const cl::Device& device, const DeviceInfo& info, const LaunchShape& shape,
                   cl_uint arguments) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(ExitCode::internal, "launch of " + name_of(kernel) + " refused: " + why);
+    throw Error(ErrorKind::internal, "launch of " + name_of(kernel) + " refused: " + why);
   };
   const cl_uint wanted = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
   if (arguments != wanted)
@@ -179,19 +179,19 @@ void check_launch(const cl::Kernel& kernel, const cl::Device& device, const Devi
   const std::size_t group = shape.local[0] * shape.local[1];
   const std::size_t most = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device);
   if (group > most)
-    throw Error(ExitCode::device, info.name + ": " + name_of(kernel) + " needs work-groups of " +
-                                      std::to_string(group) + ", the device gives " + std::to_string(most) +
-                                      "; choose another --device");
+    throw Error(ErrorKind::device, info.name + ": " + name_of(kernel) + " needs work-groups of " +
+                                       std::to_string(group) + ", the device gives " + std::to_string(most) +
+                                       "; choose another --device");
   if (kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device) > info.local_memory_bytes)
-    throw Error(ExitCode::device,
+    throw Error(ErrorKind::device,
                 info.name + ": too little local memory for " + name_of(kernel) + "; choose another --device");
 }
 
 } // namespace
 
 void Session::refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl::Error& error) const {
-  throw Error(ExitCode::device, info_.name + ": argument " + std::to_string(index) + " of " + name_of(kernel) +
-                                    " was refused: " + cl_error_name(error.err()));
+  throw Error(ErrorKind::device, info_.name + ": argument " + std::to_string(index) + " of " + name_of(kernel) +
+                                     " was refused: " + cl_error_name(error.err()));
 }
 
 double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments) {

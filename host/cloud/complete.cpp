@@ -51,11 +51,11 @@ void turn_round(PointCloud& cloud) {
 
 void refuse_missing(const PointCloud& cloud, const CompleteOptions& options) {
   if (options.normals == NormalSource::file && cloud.normal.empty() && cloud.triangle.empty())
-    throw Error(ExitCode::input,
+    throw Error(ErrorKind::input,
                 "normals = \"file\": the cloud has neither normals (nx ny nz) nor faces to take them from; "
                 "use \"auto\" or \"estimate\"");
   if (options.radii == RadiusSource::file && cloud.radius.empty())
-    throw Error(ExitCode::input, "radii from the file: the cloud has no property \"radius\"; let them be estimated");
+    throw Error(ErrorKind::input, "radii from the file: the cloud has no property \"radius\"; let them be estimated");
 }
 
 /// Fills cloud.normal and report.normals_from; true when the signs are the file's own.
@@ -155,11 +155,11 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
   report.points_dropped += dropped;
   report.triangles = cloud.triangle.size();
   if (cloud.size() == 0)
-    throw Error(ExitCode::input, dropped == 0
-                                     ? "the cloud has no points; at least one is needed"
-                                     : "none of the cloud's " + std::to_string(dropped) +
-                                           " points can be used: every one has a value that is not finite, a normal "
-                                           "of length 0 or a radius not above 0; check the file's columns");
+    throw Error(ErrorKind::input, dropped == 0
+                                      ? "the cloud has no points; at least one is needed"
+                                      : "none of the cloud's " + std::to_string(dropped) +
+                                            " points can be used: every one has a value that is not finite, a normal "
+                                            "of length 0 or a radius not above 0; check the file's columns");
   const std::size_t outliers = drop_outliers(cloud);
   report.points_dropped += outliers;
   if (outliers > 0)

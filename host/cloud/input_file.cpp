@@ -18,7 +18,7 @@ Error cannot_read(const std::string& path, int error_number) {
                            ? "check its name; relative names start at the working directory, or at "
                              "the scene file's folder when a scene names them"
                            : "check the path and the disk";
-  return Error(ExitCode::input, path + ": cannot read the file: " + std::strerror(error_number) + "; " + remedy);
+  return Error(ErrorKind::input, path + ": cannot read the file: " + std::strerror(error_number) + "; " + remedy);
 }
 
 void refuse_unless_regular(const std::string& path, const struct stat& status) {
@@ -27,7 +27,7 @@ void refuse_unless_regular(const std::string& path, const struct stat& status) {
                      : S_ISFIFO(status.st_mode) ? "a pipe"
                      : S_ISSOCK(status.st_mode) ? "a socket"
                                                 : "a device";
-  throw Error(ExitCode::input,
+  throw Error(ErrorKind::input,
               path + ": is " + kind + ", expected a regular file" +
                   (S_ISDIR(status.st_mode) ? "; name a file in it" : "; save the data to a file first"));
 }
@@ -61,16 +61,16 @@ FileBytes read_whole_file(const std::string& path) {
   bytes.size = static_cast<std::size_t>(status.st_size);
   bytes.data.reset(new (std::nothrow) char[std::max<std::size_t>(bytes.size, 1)]);
   if (!bytes.data)
-    throw Error(ExitCode::memory, path + ": " + std::to_string(bytes.size) +
-                                      " bytes do not fit into memory; thin the cloud out or split it");
+    throw Error(ErrorKind::memory, path + ": " + std::to_string(bytes.size) +
+                                       " bytes do not fit into memory; thin the cloud out or split it");
   std::size_t done = 0;
   while (done < bytes.size) {
     const ssize_t got = ::read(file.fd, bytes.data.get() + done, std::min<std::size_t>(bytes.size - done, 1u << 30));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw cannot_read(path, errno);
     if (got == 0)
-      throw Error(ExitCode::input, path + ": became shorter while it was read (at byte " + std::to_string(done) +
-                                       "); wait until it has been written");
+      throw Error(ErrorKind::input, path + ": became shorter while it was read (at byte " + std::to_string(done) +
+                                        "); wait until it has been written");
     done += static_cast<std::size_t>(got);
   }
   return bytes;

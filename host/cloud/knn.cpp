@@ -126,7 +126,7 @@ void Sites::sort_points(const std::vector<Eigen::Vector3d>& positions) {
 
 Sites::Sites(const std::vector<Eigen::Vector3d>& positions) : tree_(std::make_unique<Tree>()) {
   if (positions.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw Error(ExitCode::memory,
+    throw Error(ErrorKind::memory,
                 "cloud of " + std::to_string(positions.size()) +
                     " points: neighbours can be searched among 2147483647 at most; thin the cloud out");
   choose_frame(positions);

@@ -11,7 +11,7 @@ namespace {
 
 /// Two rings around a splat, by which noise of single normals is evened out; the second counts little.
 constexpr unsigned field_neighbours = 18;
-/// As discs that are blended (kernels/lib/blend.cl).
+/// As discs that are blended (kernels/surface/blend.cl).
 constexpr float same_surface_cosine = 0.5f;
 /// Of the larger spread of the neighbours along some axis: neighbours that stand nearly in a line tell nothing of what
 /// is across it.

@@ -22,8 +22,8 @@ void require_colours(const Picture& picture, const std::string& name) {
     std::string list;
     for (const auto& [known, values] : picture.channels)
       list += (list.empty() ? "" : ", ") + known;
-    throw Error(ExitCode::input, name + ": has no channel \"" + channel + "\", expected R, G and B; its channels are " +
-                                     (list.empty() ? "none" : list));
+    throw Error(ErrorKind::input, name + ": has no channel \"" + channel +
+                                      "\", expected R, G and B; its channels are " + (list.empty() ? "none" : list));
   }
 }
 
@@ -130,8 +130,9 @@ PictureDifference difference(const Picture& a, const std::string& name_a, const 
                  std::max(a.window.y0, b.window.y0), std::min(a.window.y1, b.window.y1)};
   const int width = result.area.x1 - result.area.x0, height = result.area.y1 - result.area.y0;
   if (width <= 0 || height <= 0)
-    throw Error(ExitCode::input, name_a + " and " + name_b + ": no pixel in common: the first holds " + text(a.window) +
-                                     ", the second " + text(b.window) + "; render the same --pixelbounds");
+    throw Error(ErrorKind::input, name_a + " and " + name_b + ": no pixel in common: the first holds " +
+                                      text(a.window) + ", the second " + text(b.window) +
+                                      "; render the same --pixelbounds");
   const Planes planes = planes_of(a, b, result);
   measure_truth(planes, result);
   result.all = figures(planes.a, planes.b, 3, planes.finite, result.eps);

@@ -17,7 +17,7 @@ namespace pointgi {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
-  throw Error(ExitCode::input, path + ": " + what);
+  throw Error(ErrorKind::input, path + ": " + what);
 }
 
 /// Pixels are allocated before they are read, so a few bytes of damaged header must not ask for all memory. zlib cannot

@@ -76,7 +76,7 @@ void guarded(const std::string& path, Call&& call) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error(ExitCode::output,
+    throw Error(ErrorKind::output,
                 path + ": OpenEXR cannot write the file: " + error.what() + "; check the folder and the disk");
   }
 }
@@ -159,7 +159,7 @@ ExrWriter::ExrWriter(const std::string& path, int full_width, int full_height, P
   if (got < 0) throw output_error(path, "read back the header", errno);
   header.resize(static_cast<std::size_t>(got));
   const auto place = find_float_attribute(header, render_time_attribute);
-  if (!place) throw Error(ExitCode::internal, path + ": the header just written lacks " + render_time_attribute);
+  if (!place) throw Error(ErrorKind::internal, path + ": the header just written lacks " + render_time_attribute);
   state.render_time_at = *place;
 }
 

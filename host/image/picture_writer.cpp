@@ -14,11 +14,11 @@ void check_window(int full_width, int full_height, PixelWindow window) {
   if (full_width > 0 && full_height > 0 && 0 <= window.x0 && window.x0 < window.x1 && window.x1 <= full_width &&
       0 <= window.y0 && window.y0 < window.y1 && window.y1 <= full_height)
     return;
-  throw Error(ExitCode::usage, "pixel window x " + std::to_string(window.x0) + " to " + std::to_string(window.x1) +
-                                   ", y " + std::to_string(window.y0) + " to " + std::to_string(window.y1) +
-                                   ": expected a non-empty part of the image of " + std::to_string(full_width) + "x" +
-                                   std::to_string(full_height) +
-                                   " pixels; give --pixelbounds x0,x1,y0,y1 with x1 and y1 one past the last pixel");
+  throw Error(ErrorKind::usage, "pixel window x " + std::to_string(window.x0) + " to " + std::to_string(window.x1) +
+                                    ", y " + std::to_string(window.y0) + " to " + std::to_string(window.y1) +
+                                    ": expected a non-empty part of the image of " + std::to_string(full_width) + "x" +
+                                    std::to_string(full_height) +
+                                    " pixels; give --pixelbounds x0,x1,y0,y1 with x1 and y1 one past the last pixel");
 }
 
 /// Index of the channel `name`; also refuses a second one of that name, of which OpenEXR would keep one.
@@ -30,7 +30,7 @@ std::size_t index_of(const std::vector<ChannelName>& channels, const std::string
     ++count;
   }
   if (count != 1)
-    throw Error(ExitCode::internal,
+    throw Error(ErrorKind::internal,
                 "picture channel \"" + name + "\": " + std::to_string(count) + " of that name, expected one");
   return found;
 }
@@ -43,9 +43,9 @@ std::string png_path_of(const std::string& exr_path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (extension != ".exr")
-    throw Error(ExitCode::output, "\"" + exr_path +
-                                      "\": the name of the picture must end in .exr (a .png is written beside it); "
-                                      "give one like out/picture.exr");
+    throw Error(ErrorKind::output, "\"" + exr_path +
+                                       "\": the name of the picture must end in .exr (a .png is written beside it); "
+                                       "give one like out/picture.exr");
   return path.replace_extension(".png").string();
 }
 
@@ -61,7 +61,7 @@ struct PictureWriter::Files {
     for (std::size_t i = 0; i < 3; ++i) {
       rgb[i] = index_of(channels, names[i]);
       if (channels[rgb[i]].is_uint)
-        throw Error(ExitCode::internal, std::string("picture channel \"") + names[i] + "\": expected floats");
+        throw Error(ErrorKind::internal, std::string("picture channel \"") + names[i] + "\": expected floats");
     }
     for (const ChannelName& channel : channels)
       index_of(channels, channel.name);
@@ -75,7 +75,7 @@ struct PictureWriter::Files {
     for (const std::vector<float>& values : band.values)
       fits = fits && values.size() == size;
     if (fits) return;
-    throw Error(ExitCode::internal,
+    throw Error(ErrorKind::internal,
                 exr_path + ": a band of " + std::to_string(band.rows) + " rows of " + std::to_string(band.width) +
                     " pixels in " + std::to_string(band.values.size()) + " channels from row " +
                     std::to_string(band.first_row) + " on does not fit, expected at most " +
@@ -122,7 +122,7 @@ void PictureWriter::write(const Band& band) {
 
 void PictureWriter::finish(double render_seconds) {
   Files& files = *files_;
-  if (files.finished) throw Error(ExitCode::internal, files.exr_path + ": finished twice");
+  if (files.finished) throw Error(ErrorKind::internal, files.exr_path + ": finished twice");
   files.finished = true;
   if (const int missing = files.window.y1 - files.next_row; missing > 0) {
     files.exr.write_zeros(missing);

@@ -58,7 +58,7 @@ struct PngWriter::State {
       return;
     }
     if (write_error) std::rethrow_exception(write_error);
-    throw Error(ExitCode::output,
+    throw Error(ErrorKind::output,
                 file.final_path() + ": libpng cannot write the file: " + message + "; check the folder and the disk");
   }
 

@@ -76,11 +76,11 @@ Program shade_program(const TraversalVariant& variant, const SceneFeatures& feat
 }
 
 Program direct_irradiance_program(const TraversalVariant& variant, const SceneFeatures& features) {
-  return program(variant, "fmm/direct_irradiance.cl", feature_options(features));
+  return program(variant, "radiosity/point_irradiance.cl", feature_options(features));
 }
 
 Program specular_rays_program(const TraversalVariant& variant) {
-  return program(variant, "traverse/specular_rays.cl",
+  return program(variant, "test/specular_rays.cl",
                  feature_options({false, false, false, false, true, true, true, true}));
 }
 
@@ -117,7 +117,7 @@ Program caustics_of_points_program(unsigned k) {
 }
 
 Program nearest_photons_program(unsigned k) {
-  return {"photon/nearest.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
+  return {"test/nearest_photons.cl", "-D GATHER_MOST=" + std::to_string(gather_room(k))};
 }
 
 } // namespace pointgi

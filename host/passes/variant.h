@@ -5,7 +5,7 @@
 
 namespace pointgi {
 
-/// A variant of octree and traversal, nothing left open. What goes with what: host/passes/variant_list.h.
+/// A variant of octree and traversal, nothing left open. What goes with what: host/tune/variant_list.h.
 struct TraversalVariant {
   TraversalForm form = TraversalForm::step;
   unsigned axis_bits = 1; ///< log2 N of the tree

@@ -1,5 +1,5 @@
 #pragma once
-/// The photon map: a kd-tree apart from the geometry, as kernels/lib/photon_gather.cl walks it (method.md §5).
+/// The photon map: a kd-tree apart from the geometry, as kernels/photon/gather.cl walks it (method.md §5).
 #include "octree/pool.h"
 #include "octree/view.h"
 #include "shared/photon_types.h"

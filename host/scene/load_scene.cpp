@@ -23,7 +23,7 @@ toml::table parse_file(const std::string& path) {
     // Without a source path: nodes that carry one came from --set (toml_words.h).
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(ExitCode::input, place_of(error.source(), path).text() + ": not valid TOML: " + complaint(error));
+    throw Error(ErrorKind::input, place_of(error.source(), path).text() + ": not valid TOML: " + complaint(error));
   }
 }
 
@@ -78,7 +78,7 @@ Scene scene_of_document(const toml::table& document, const std::string& path, co
   load_traversal(root, scene.traversal);
 
   if (scene.clouds.empty() && scene.shapes.empty())
-    throw Error(ExitCode::input,
+    throw Error(ErrorKind::input,
                 path +
                     ": the scene is empty, expected at least one [[cloud]] or [[shape]]; there is nothing to render");
   if (!shines(scene))

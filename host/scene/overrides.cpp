@@ -15,7 +15,7 @@ struct Override {
 };
 
 [[noreturn]] void refuse(const Override& set, const std::string& what) {
-  throw Error(ExitCode::usage, set.origin + ": " + what);
+  throw Error(ErrorKind::usage, set.origin + ": " + what);
 }
 
 std::string joined(const std::vector<std::string>& path, std::size_t count) {

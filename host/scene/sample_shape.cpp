@@ -227,17 +227,17 @@ std::string text(double number) {
   for (int step = 0; step < 1000 && count_at(enough) > max_points; ++step)
     enough *= 1.01;
   constexpr double written_digits = 1.001; // the text must not round it down
-  throw Error(ExitCode::input, shape.place.text() + ": the shape's spacing " + text(shape.spacing) + " would give " +
-                                   text(count) + " splats, expected at most " + text(max_points) +
-                                   "; set its spacing to " + text(enough * written_digits) + " or more");
+  throw Error(ErrorKind::input, shape.place.text() + ": the shape's spacing " + text(shape.spacing) + " would give " +
+                                    text(count) + " splats, expected at most " + text(max_points) +
+                                    "; set its spacing to " + text(enough * written_digits) + " or more");
 }
 
 } // namespace
 
 PointCloud sample_shape(const ShapeSettings& shape, std::size_t max_points) {
   if (!(shape.spacing >= limits::length.low && shape.spacing <= limits::length.high))
-    throw Error(ExitCode::input, shape.place.text() + ": the shape's spacing is " + text(shape.spacing) +
-                                     ", expected a number " + limits::length.words);
+    throw Error(ErrorKind::input, shape.place.text() + ": the shape's spacing is " + text(shape.spacing) +
+                                      ", expected a number " + limits::length.words);
   return std::visit(
       [&](const auto& geometry) {
         const double count = count_of(geometry, shape.spacing);

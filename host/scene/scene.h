@@ -142,7 +142,7 @@ struct CausticSettings {
 };
 
 /// Form of the octree; the picture does not depend on it beyond rounding. What is left open is chosen for the device
-/// (host/passes/tuned.h).
+/// (host/tune/tuned.h).
 struct OctreeSettings {
   std::optional<unsigned> branching; ///< N of the N^d tree: 2 or 4
   std::optional<PointOrder> order;
@@ -172,7 +172,7 @@ inline bool operator==(WorkGroup a, WorkGroup b) {
 }
 
 /// Kernel variant of the traversal. What is left open is chosen for the device; what goes with what is told by
-/// host/passes/variant_list.h.
+/// host/tune/variant_list.h.
 struct TraversalSettings {
   std::optional<TraversalForm> form;
   std::optional<RayGrouping> grouping;

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw Error(ExitCode::input, where + ": " + what);
+  throw Error(ErrorKind::input, where + ": " + what);
 }
 
 /// Walks TOML text byte by byte, knowing only strings, comments and brackets.

@@ -1,7 +1,7 @@
 #include "host/scene/splats.h"
 #include "host/cloud/input_file.h"
-#include "host/cloud/mesh.h"
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/mesh.h"
+#include "host/cloud/readers/ply.h"
 #include "host/error.h"
 #include "host/image/srgb.h"
 #include "host/scene/sample_shape.h"
@@ -88,7 +88,7 @@ namespace {
 void refuse_scanner_format(const std::string& file) {
   for (const char* extension : {".las", ".laz", ".e57", ".pcd", ".pts", ".ptx", ".xyz"})
     if (has_extension(file, extension))
-      throw Error(ExitCode::input,
+      throw Error(ErrorKind::input,
                   file + ": " + (extension + 1) +
                       " is not read directly; convert it to PLY first, with `pdal translate` or CloudCompare");
 }
@@ -103,7 +103,7 @@ PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
   try {
     complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);
   } catch (const Error& error) {
-    throw Error(error.code(), settings.file + ": " + error.what());
+    throw Error(error.kind(), settings.file + ": " + error.what());
   }
   cloud.triangle = {}; // they have given their normals; nothing later reads them
   return cloud;

@@ -57,11 +57,11 @@ SourcePlace TableReader::place(const char* key) const {
 }
 
 void TableReader::fail(const char* key, const std::string& what) const {
-  throw Error(ExitCode::input, place(key).text() + ": " + path_to(key) + ": " + what);
+  throw Error(ErrorKind::input, place(key).text() + ": " + path_to(key) + ": " + what);
 }
 
 void TableReader::fail(const std::string& what) const {
-  throw Error(ExitCode::input, place().text() + ": " + (path_.empty() ? "" : path_ + ": ") + what);
+  throw Error(ErrorKind::input, place().text() + ": " + (path_.empty() ? "" : path_ + ": ") + what);
 }
 
 void TableReader::unexpected(const char* key, const std::string& expected) const {
@@ -73,7 +73,7 @@ void TableReader::missing(const char* key, const std::string& expected) const {
 }
 
 void TableReader::refuse_key(const toml::key& key, const std::string& what) const {
-  throw Error(ExitCode::input, place_of(key.source(), *file_).text() + ": " + path_to(key.str()) + ": " + what);
+  throw Error(ErrorKind::input, place_of(key.source(), *file_).text() + ": " + path_to(key.str()) + ": " + what);
 }
 
 void TableReader::allow_only(const std::vector<std::string>& keys) const {

@@ -13,7 +13,7 @@ toml::table parsed(const std::string& text, const std::string& file) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(ExitCode::input,
+    throw Error(ErrorKind::input,
                 place_of(error.source(), file).text() + ": not valid TOML: " + std::string(error.description()));
   }
 }

@@ -81,7 +81,7 @@ static inline uint pool_component(uint4 texel, uint i) {
 #endif
 
 #ifdef HAS_CAUSTICS
-/* And the photon map (kernels/lib/photon_gather.cl), and what is known of it at the points already
+/* And the photon map (kernels/photon/gather.cl), and what is known of it at the points already
  * (kernels/photon/caustics_of_points.cl). */
 #define POOL_ARGS NORMAL_ARGS, photon_nodes, photon_buckets, gather_params, caustic_pool
 #define POOL_PARAMS \

@@ -2,7 +2,7 @@
  * disc: found once, for all views (method.md section 5).
  * NDRange: 1-D, a work-item a point, the first of them point `first`, padded; past point `count` they do nothing. */
 #define GATHER_SURFACE
-#include "lib/photon_gather.cl"
+#include "photon/gather.cl"
 
 /* Where the k nearest photons lie farther out than this many radii of the disc, what they bring is taken from the points
  * alone; where nearer than the other, found anew at every place that a ray meets. */

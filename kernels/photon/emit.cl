@@ -1,7 +1,7 @@
 /* Photons on their way from a light to a specular leaf (method.md section 5).
  *   EQUAL_POWER  defined: to a random point of a splat of the leaf, each with the same power, as in the thesis; else
  *                uniformly over the leaf's sphere, with the power that makes their sum unbiased */
-#include "lib/direct_light.cl"
+#include "lights/lights.cl"
 #include "shared/photon_types.h"
 
 /* Uses of random numbers at vertex 0 (kernels/lib/sampling.cl). */

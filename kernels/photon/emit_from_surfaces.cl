@@ -4,7 +4,7 @@
  *   FROM_SURFACES  defined where these photons are sent; emitters are then the specular splats, radiance[i] what point i of
  *                  the pool sends from its front */
 #include "photon/emit.cl"
-#include "lib/specular.cl"
+#include "materials/materials.cl"
 
 /* Photon `number` of the aim's, as it looks for light; its power is for a radiance of 1. */
 static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __global PhotonAim* aim, uint number,

@@ -1,7 +1,7 @@
 /* Irradiance of given places by the photons of the map (method.md section 5).
  * NDRange: 1-D, a work-item a place, padded; work-items past `count` do nothing. */
 #define GATHER_SURFACE
-#include "lib/photon_gather.cl"
+#include "photon/gather.cl"
 
 /* irradiance[i].xyz [W/m2, scaled as RenderParams] of the place points[2 i].xyz, of the side that points[2 i + 1].xyz, unit,
  * is the normal of. */

@@ -5,7 +5,7 @@
  * aim_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER or FROM_SURFACES, any leaf will do for a
  * photon, else only its own. */
 #include "photon/emit.cl"
-#include "lib/specular.cl"
+#include "materials/materials.cl"
 #ifdef FROM_SURFACES
 #include "photon/emit_from_surfaces.cl"
 #endif

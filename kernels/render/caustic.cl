@@ -1,9 +1,9 @@
 /* Light that surfaces receive by way of mirrors and glass, gathered from the photon map (method.md section 5).
  *   HAS_CAUSTICS  defined where there are photons */
-#include "lib/traversal.cl"
+#include "traverse/traversal.cl"
 #ifdef HAS_CAUSTICS
 #define GATHER_SURFACE
-#include "lib/photon_gather.cl"
+#include "photon/gather.cl"
 
 /* Shares of discs that all know their caustics add up to 1 but for rounding. */
 #define ALL_STORED 0.9999f

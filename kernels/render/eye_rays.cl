@@ -2,11 +2,11 @@
  * fewer at the end; hits[j * columns + i] are those of the image's pixel (first_x + i, first_y + j).
  *   GROUP_X, GROUP_Y  shape of a work-group, 32 or 64 work-items: one or two pixels, a ray a work-item, by their linear
  *                     number; NDRange (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows)
- *   RAY_PACKETS       instead a work-item traces the rays of 2 x 2 pixels as one packet (kernels/lib/wide_packet.cl);
+ *   RAY_PACKETS       instead a work-item traces the rays of 2 x 2 pixels as one packet (kernels/traverse/wide_packet.cl);
  *                     NDRange (columns, rows) in such squares, padded */
 #include "render/camera.cl"
 #include "render/group.cl"
-#include "lib/traversal.cl"
+#include "traverse/traversal.cl"
 
 /* One sample's ray, traced on its own. */
 static inline Hit eye_hit(POOL_PARAMS, __constant RenderParams* params, SampleId id) {
@@ -17,7 +17,7 @@ static inline Hit eye_hit(POOL_PARAMS, __constant RenderParams* params, SampleId
 }
 
 #ifdef RAY_PACKETS
-#include "lib/wide_packet.cl"
+#include "traverse/wide_packet.cl"
 
 #define LANES_16 ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 

@@ -1,12 +1,12 @@
 /* One sample of a pixel: from the image to radiance.
  * L = emission + rho/pi (H_direct + H_indirect) on front sides; a back face reads 0; a miss reads the environment.
  *   NO_SHADOW_RAYS  H_direct is in the points' irradiance already */
-#include "lib/direct_light.cl"
+#include "lights/lights.cl"
 #include "render/camera.cl"
 
 #define INVERSE_PI 0.31830989f
 
-/* Uses of random numbers at a vertex, after those of kernels/lib/direct_light.cl (1 to 3). */
+/* Uses of random numbers at a vertex, after those of kernels/lights/lights.cl (1 to 3). */
 #define DIMENSION_BOUNCE 4u
 #define DIMENSION_ROULETTE 5u
 #define DIMENSION_SCATTER 6u

@@ -1,6 +1,6 @@
 /* One sample of a pixel by path tracing, the measure of every other way of computing light: unbiased over the same
  * splats, blending, materials and lights. At every diffuse surface light straight from its sources is gathered by shadow
- * rays (kernels/lib/direct_light.cl), and the path goes on in a direction drawn by the cosine: rho/pi cos / (cos/pi) =
+ * rays (kernels/lights/lights.cl), and the path goes on in a direction drawn by the cosine: rho/pi cos / (cos/pi) =
  * rho. Emission and environment count where a camera's ray meets them; where a bounced ray does, the shadow rays of the
  * surface before have counted them. No sample is clamped: what is noisy shows in the variance.
  *   PATH_CLASSES  defined only where params->path_states leaves some paths out */

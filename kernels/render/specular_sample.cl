@@ -3,7 +3,7 @@
  * What the eye ray itself meets is Direct, Diffuse and Caustic as anywhere, everything behind is Specular. */
 #include "render/eye_sample.cl"
 #include "render/film.cl"
-#include "lib/specular.cl"
+#include "materials/materials.cl"
 #include "render/caustic.cl"
 
 #ifdef HAS_SPECULAR

@@ -52,7 +52,7 @@ typedef struct PhotonFlight {
   pg_uint end;       /* bytes 28-31 */
   float emitted[3];  /* bytes 32-43: power when it set out */
   float seen; /* bytes 44-47: what the eye makes of its power where it was stored: light of radiance L in glass of
-                 index n is carried as L / n^2 on the eye's way (kernels/lib/specular.cl), so (n where it set out
+                 index n is carried as L / n^2 on the eye's way (kernels/materials/materials.cl), so (n where it set out
                  / n here)^2 */
   float absorbed[3]; /* bytes 48-59: what its surfaces and glass took on the way, less what chance gave */
   pg_uint splat;     /* bytes 60-63: that it met last; of the pool */

@@ -1,6 +1,6 @@
 /* Given rays through the chosen traversal: for tests, probes and later stages.
  * NDRange: 1-D, one work-item a ray, padded; work-items past `count` do nothing. */
-#include "lib/traversal.cl"
+#include "traverse/traversal.cl"
 
 static inline Ray ray_of_query(const __global RayQuery* q, float step_delta) {
   Ray ray;
@@ -60,7 +60,7 @@ __kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __g
 }
 
 #ifdef RAY_PACKETS /* packets go through the wide form, on CPU devices */
-#include "lib/wide_packet.cl"
+#include "traverse/wide_packet.cl"
 
 /* answers[i] = nearest hits of packets[i]. NDRange: 1-D, one work-item a packet, padded. */
 __kernel void trace_packets(POOL_PARAMS, const __global RayPacketQuery* packets, __global RayPacketAnswer* answers,

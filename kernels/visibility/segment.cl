@@ -1,5 +1,5 @@
 /* Whether light goes from point to point: the one rule of the V-map and of the direct solver. */
-#include "lib/traversal.cl"
+#include "traverse/traversal.cl"
 
 /* Whether something stands between two points. The splats of the pools block, all but those of the surfaces at the two
  * ends (ShadowEnds). Points in one place see each other. */

@@ -1,5 +1,5 @@
 #pragma once
-/// The descent of method.md §2 on the host: the truth beside kernels/lib/octree_descent.cl.
+/// The descent of method.md §2 on the host: the truth beside kernels/traverse/octree_descent.cl.
 #include "octree/pack/step_pools.h"
 #include <array>
 

@@ -1,7 +1,7 @@
 /// Writes scenes/demo/statue.ply: a procedural bust on a fluted column, as a scan of it might come out: points with
 /// normals and colours, unevenly spaced, no triangles.
 ///   make_statue OUT.ply [POINTS]
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

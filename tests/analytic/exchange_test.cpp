@@ -1,8 +1,8 @@
 /// What is known of light between surfaces (truths.md section 1), through V-map, lists and FMM as the device runs them.
 #include "host/passes/build_pools.h"
-#include "host/passes/fmm.h"
-#include "host/passes/radiosity.h"
-#include "host/passes/variant_list.h"
+#include "host/radiosity/fmm.h"
+#include "host/radiosity/radiosity.h"
+#include "host/tune/variant_list.h"
 #include "tests/support/cache_folder.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"

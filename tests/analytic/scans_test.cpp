@@ -1,6 +1,6 @@
 /// Real scans, where they lie beside the project: lit from the right side, closed where the scan is closed, as large as
 /// their meshes.
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 #include "tests/support/render.h"
 #include "tests/support/scans.h"
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// The fast solver against the exact one, point by point (method.md section 4).
-#include "host/passes/radiosity.h"
+#include "host/radiosity/radiosity.h"
 #include "tests/support/cache_folder.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"

@@ -5,7 +5,7 @@
 /// --help
 #include "host/app/light_stages.h"
 #include "host/app/prepared_scene.h"
-#include "host/passes/render.h"
+#include "host/render/render.h"
 #include "tests/bench/reference_halves.h"
 #include "tests/support/cache_folder.h"
 #include <CLI/CLI.hpp>
@@ -352,7 +352,7 @@ int main(int argc, char** argv) {
     const Scene own = load_any(file, overrides);
     int width = 0, height = 0;
     if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || width < 1 || height < 1)
-      throw Error(ExitCode::usage, "--size: expected WIDTHxHEIGHT, found \"" + size + "\"");
+      throw Error(ErrorKind::usage, "--size: expected WIDTHxHEIGHT, found \"" + size + "\"");
     overrides.push_back("render.size=[" + std::to_string(width) + ", " + std::to_string(height) + "]");
     Session session(choose_device(""));
     std::printf("device: %s (%s)\nscene: %s, %s%s%s\n", session.info().name.c_str(), session.info().platform.c_str(),

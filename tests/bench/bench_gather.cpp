@@ -1,8 +1,8 @@
 /// Nearest photons by the kernel against FLANN's single index on all its threads: same photons, places and k, A B A B,
 /// answers compared; ends with 1 where they differ.
 ///   bench_gather [PHOTONS [PAIRS [K...]]]
-#include "host/passes/photon_map.h"
 #include "host/passes/variant.h"
+#include "host/photon/device_photon_map.h"
 #include "octree/build/cell_key.h"
 #include "tests/support/photons.h"
 #include <algorithm>

@@ -3,9 +3,9 @@
 /// counts. bench_radiosity --help
 #include "fmm/ref/direct_sum.h"
 #include "fmm/solve/solve.h"
-#include "host/passes/direct.h"
-#include "host/passes/fmm.h"
 #include "host/passes/visibility.h"
+#include "host/radiosity/direct.h"
+#include "host/radiosity/fmm.h"
 #include "host/scene/scene.h"
 #include "octree/vmap/make_links.h"
 #include "tests/support/exchange.h"

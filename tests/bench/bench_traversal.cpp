@@ -1,15 +1,15 @@
 /// Rays through the octree against Embree over the same splats, rays and threads, A B A B, medians of the pairs.
 ///   bench_traversal [--json FILE] [--markdown FILE] [--splats N,…] [--pairs K] [--form step|wide] [--clock wall|cpu]
 ///                   [CLOUD.ply …]
-#include "host/app/default_view.h"
 #include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
-#include "host/passes/profile.h"
-#include "host/passes/profile_rays.h"
 #include "host/passes/ray_packets.h"
-#include "host/passes/tuned.h"
 #include "host/scene/lighting.h"
+#include "host/tune/profile.h"
+#include "host/tune/profile_rays.h"
+#include "host/tune/tuned.h"
+#include "host/view/default_view.h"
 #include "tests/bench/embree_peer.h"
 #include "tests/bench/synthetic_blob.h"
 #include <CLI/CLI.hpp>

@@ -1,8 +1,8 @@
 /// How the V-map grows: a closed room with a bumpy body, of 25,000 to 200,000 points; links by kind, rays and seconds.
 /// bench_vmap [SAMPLES [EPSILON [POINT_SAMPLES [POINTS...]]]]
 #include "host/passes/build_pools.h"
-#include "host/passes/variant_list.h"
 #include "host/passes/visibility.h"
+#include "host/tune/variant_list.h"
 #include "octree/ref/link_quality.h"
 #include "tests/support/rooms.h"
 #include <chrono>

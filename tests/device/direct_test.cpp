@@ -2,8 +2,8 @@
 #include "fmm/ref/direct_sum.h"
 #include "host/error.h"
 #include "host/passes/build_pools.h"
-#include "host/passes/direct.h"
-#include "host/passes/variant_list.h"
+#include "host/radiosity/direct.h"
+#include "host/tune/variant_list.h"
 #include "octree/ref/segment_blocked.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"
@@ -134,7 +134,7 @@ TEST_CASE("direct on the device: what does not fit is refused with what is wante
     DeviceDirect(session(), scene.pools, scene.variant, scene.splats, options);
     FAIL("it took less than a bit a pair");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::memory);
+    CHECK(error.kind() == ErrorKind::memory);
     CHECK_THAT(error.what(), Catch::Contains(std::to_string(scene.splats.size()) + " points, 1 MiB") &&
                                  Catch::Contains("1 MiB left") && Catch::Contains("method = \"fmm\""));
   }

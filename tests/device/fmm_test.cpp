@@ -1,7 +1,7 @@
 /// The kernels of radiosity against their twin in double.
 #include "fmm/ref/direct_sum.h"
 #include "fmm/solve/solve.h"
-#include "host/passes/fmm.h"
+#include "host/radiosity/fmm.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 /// Furnaces: a closed room of albedo rho in which all emits E settles at B = E / (1 - rho) (truths.md section 1).
-#include "host/passes/fmm.h"
+#include "host/radiosity/fmm.h"
 #include "tests/support/device.h"
 #include "tests/support/room.h"
 #include <catch2/catch.hpp>

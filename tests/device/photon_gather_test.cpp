@@ -1,6 +1,6 @@
-#include "host/passes/photon.h"
-#include "host/passes/photon_map.h"
 #include "host/passes/variant.h"
+#include "host/photon/device_photon_map.h"
+#include "host/photon/trace_photons.h"
 #include "tests/support/device.h"
 #include "tests/support/photons.h"
 #include <algorithm>
@@ -190,7 +190,7 @@ TEST_CASE("nearest photons where many lie in one place, are too few, too far, or
 
 namespace {
 
-/// Irradiance of a place that faces upwards, by sorting all photons: kernels/lib/photon_gather.cl says what counts.
+/// Irradiance of a place that faces upwards, by sorting all photons: kernels/photon/gather.cl says what counts.
 double irradiance_by_sorting(const std::vector<Photon>& photons, const cl_float4& place, unsigned k, double radius) {
   std::vector<std::pair<double, double>> found; // distance squared, power
   for (const Photon& p : photons) {

@@ -1,5 +1,5 @@
 /// What photons bring to points, found once for all views (kernels/photon/caustics_of_points.cl).
-#include "host/passes/photon_map.h"
+#include "host/photon/device_photon_map.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include "tests/support/photons.h"
@@ -60,7 +60,7 @@ std::vector<cl_float4> caustics_at(const std::vector<Splat>& splats, const std::
   return session().download(map.at_points, splats.size());
 }
 
-/// As surface_distance2 of kernels/lib/photon_gather.cl; infinity on another side.
+/// As surface_distance2 of kernels/photon/gather.cl; infinity on another side.
 double distance2(const Splat& place, const float x[3], const float inward[3]) {
   double d2 = 0.0, height = 0.0, along = 0.0;
   for (int a = 0; a < 3; ++a) {

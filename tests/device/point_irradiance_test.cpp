@@ -1,6 +1,6 @@
 #include "host/passes/build_pools.h"
-#include "host/passes/point_irradiance.h"
-#include "host/passes/variant_list.h"
+#include "host/radiosity/point_irradiance.h"
+#include "host/tune/variant_list.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include <catch2/catch.hpp>

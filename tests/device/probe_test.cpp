@@ -62,7 +62,7 @@ TEST_CASE("device and host lay the shared structs out alike") {
       offsetof(GatherParams, radius2),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
-  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_layout");
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_layout");
   device.launch(kernel, LaunchShape{{1, 1}, {1, 1}}, sizes);
   const auto found = device.download(sizes, host.size());
   for (std::size_t i = 0; i < host.size(); ++i) {
@@ -87,7 +87,7 @@ TEST_CASE("the device descends as the host does, in every storage and branching"
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
   const auto in = device.upload(positions);
   const auto out = device.allocate<OctreeNode>(positions.size());
-  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(variant), "probe_descent");
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(variant), "probe_descent");
   device.launch(kernel, LaunchShape::line(positions.size()), on_device.nodes, on_device.leaves, on_device.points, in,
                 out, static_cast<cl_uint>(positions.size()));
   const auto found = device.download(out, positions.size());
@@ -120,7 +120,7 @@ TEST_CASE("random numbers are the published hash's") {
   Session& device = session();
   const cl_uint count = 256;
   const auto values = device.allocate<cl_uint4>(count);
-  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_rng");
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_rng");
   device.launch(kernel, LaunchShape::line(count), values, count);
   const auto found = device.download(values, count);
   for (cl_uint i = 0; i < count; ++i)

@@ -1,5 +1,5 @@
-#include "host/passes/profile.h"
 #include "host/scene/lighting.h"
+#include "host/tune/profile.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include <catch2/catch.hpp>

@@ -1,8 +1,8 @@
 /// Who takes part in the exchange of light, at the level of the passes.
 #include "host/error.h"
 #include "host/passes/build_pools.h"
-#include "host/passes/radiosity.h"
-#include "host/passes/variant_list.h"
+#include "host/radiosity/radiosity.h"
+#include "host/tune/variant_list.h"
 #include "tests/support/cache_folder.h"
 #include "tests/support/device.h"
 #include "tests/support/rooms.h"
@@ -109,7 +109,7 @@ TEST_CASE("V-map and FMM end between two launches when they are told to, and can
   const std::vector<float> direct(3 * room.points().size, 1.0f);
   const auto stops_after = [](int launches, const auto& work) {
     session().before_launches([&launches] {
-      if (launches-- == 0) throw Error(ExitCode::interrupted, "stop");
+      if (launches-- == 0) throw Error(ErrorKind::interrupted, "stop");
     });
     CHECK_THROWS_AS(work(), Error);
     session().before_launches({});

@@ -9,7 +9,7 @@ using namespace pointgi::test;
 
 TEST_CASE("launches that cannot work are refused before the device sees them") {
   Session& device = session();
-  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(TraversalVariant{}), "probe_rng");
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_rng");
   const auto out = device.allocate<cl_uint4>(64);
   const cl_uint count = 64;
   CHECK_THROWS_WITH(device.launch(kernel, LaunchShape::line(64), out), Catch::Contains("2 arguments, not 1"));
@@ -30,7 +30,7 @@ TEST_CASE("buffers larger than the device gives in one piece are refused with bo
     small.allocate<char>((1 << 20) + 1);
     FAIL("not refused");
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::memory);
+    CHECK(error.kind() == ErrorKind::memory);
     CHECK_THAT(error.what(), Catch::Contains("2 MiB") && Catch::Contains("1 MiB"));
   }
 }

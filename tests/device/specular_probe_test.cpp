@@ -1,5 +1,5 @@
 /// What glass, the Phong lobe and the memory of media are on the device, against formulas in double (truths.md §1).
-#include "host/passes/variant_list.h"
+#include "host/tune/variant_list.h"
 #include "tests/support/device.h"
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,7 +16,7 @@ std::vector<Out> probe(const char* kernel_name, const std::vector<In>& in, std::
   Session& device = session();
   const auto input = device.upload(in);
   const auto output = device.allocate<Out>(in.size() * out_each);
-  cl::Kernel kernel = device.kernel("traverse/probe.cl", build_options(reference_variant()), kernel_name);
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(reference_variant()), kernel_name);
   device.launch(kernel, LaunchShape::line(in.size()), input, output, static_cast<cl_uint>(in.size()));
   return device.download(output, in.size() * out_each);
 }

@@ -2,7 +2,7 @@
 #include "host/cloud/normal_field.h"
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
-#include "host/passes/variant_list.h"
+#include "host/tune/variant_list.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
 #include "tests/support/clouds.h"

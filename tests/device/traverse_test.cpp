@@ -1,7 +1,7 @@
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
 #include "host/passes/ray_packets.h"
-#include "host/passes/variant_list.h"
+#include "host/tune/variant_list.h"
 #include "octree/ref/closest_hit.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
@@ -59,7 +59,7 @@ std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::ve
   const auto points = device.upload(splats);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
-  cl::Kernel kernel = device.kernel("traverse/brute_force.cl", "", "brute_force_closest");
+  cl::Kernel kernel = device.kernel("test/brute_force.cl", "", "brute_force_closest");
   device.launch(kernel, LaunchShape::line(rays.size()), points, static_cast<cl_uint>(splats.size()), queries, answers,
                 static_cast<cl_uint>(rays.size()));
   return device.download(answers, rays.size());
@@ -200,7 +200,7 @@ TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan s
     surfaces[i] = {{s.normal[0], s.normal[1], s.normal[2], i % 3 == 0 ? 4.0f * s.radius : s.radius}};
     for (int a = 0; a < 3; ++a)
       rays[i].origin[a] = s.position[a] + (i % 2 == 0 ? 0.0f : 0.3f * s.radius * s.normal[(a + 1) % 3]);
-    rays[i].t_min = -4e-6f; // as light does (kernels/lib/direct_light.cl)
+    rays[i].t_min = -4e-6f; // as light does (kernels/lights/lights.cl)
   }
   Session& device = session();
   const auto queries = device.upload(rays);
@@ -208,7 +208,7 @@ TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan s
   const auto count = static_cast<cl_uint>(rays.size());
   const auto answers = device.allocate<RayAnswer>(rays.size());
   const auto points = device.upload(splats);
-  cl::Kernel scan = device.kernel("traverse/brute_force.cl", "", "brute_force_closest_from");
+  cl::Kernel scan = device.kernel("test/brute_force.cl", "", "brute_force_closest_from");
   device.launch(scan, LaunchShape::line(rays.size()), points, static_cast<cl_uint>(splats.size()), queries, starts,
                 answers, count);
   const std::vector<RayAnswer> truth = device.download(answers, rays.size());

@@ -1,6 +1,6 @@
 #include "host/passes/build_pools.h"
-#include "host/passes/variant_list.h"
 #include "host/passes/visibility.h"
+#include "host/tune/variant_list.h"
 #include "octree/ref/link_quality.h"
 #include "octree/ref/segment_blocked.h"
 #include "tests/support/device.h"

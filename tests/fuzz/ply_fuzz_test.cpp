@@ -1,6 +1,6 @@
 /// Damaged PLY files: whatever the bytes, read_ply() returns a cloud that the file can account for or throws an input
 /// error that says where.
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 #include "host/error.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/scans.h"
@@ -74,7 +74,7 @@ bool survives(const std::string& path, std::size_t file_size) {
   } catch (const Error& error) {
     const std::string text = error.what();
     INFO(text);
-    REQUIRE(error.code() == ExitCode::input);
+    REQUIRE(error.kind() == ErrorKind::input);
     REQUIRE(text.find(path) == 0);
     REQUIRE((text.find(": line ") != std::string::npos || text.find(": byte ") != std::string::npos));
     // Fit for a terminal: nothing of the file's bytes as they are.

@@ -1,5 +1,5 @@
 /// `pointgi bake` as a user starts it: files, messages, exit codes (interface.md).
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 #include "tests/support/run_program.h"
 #include <catch2/catch.hpp>
 #include <filesystem>

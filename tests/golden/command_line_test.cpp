@@ -258,11 +258,12 @@ TEST_CASE("kernels can be edited, and their errors name our files") {
   const std::string use = "POINTGI_KERNEL_DIR=" + folder.file("kernels") + " POINTGI_CACHE_DIR=" + folder.file("cache");
   const std::string arguments = "render " + scene + " -o " + folder.file("x.exr");
   CHECK(run_program(arguments, use).code == 0);
-  std::ofstream(folder.file("kernels/lib/blend.cl"), std::ios::app) << "\nfloat broken(void) { return nonsense; }\n";
+  std::ofstream(folder.file("kernels/surface/blend.cl"), std::ios::app)
+      << "\nfloat broken(void) { return nonsense; }\n";
   const Run run = run_program(arguments, use);
   CHECK(run.code == 4);
-  CHECK_THAT(run.err, Contains("kernels/lib/blend.cl:") && Contains("nonsense") && Contains("options:"));
-  std::filesystem::remove(folder.file("kernels/lib/blend.cl"));
+  CHECK_THAT(run.err, Contains("kernels/surface/blend.cl:") && Contains("nonsense") && Contains("options:"));
+  std::filesystem::remove(folder.file("kernels/surface/blend.cl"));
   CHECK(run_program(arguments, use).code == 2);
 }
 
@@ -277,7 +278,7 @@ TEST_CASE("dumped kernels hold what the scene needs and no more") {
   const std::string options = text.substr(0, text.find('\n'));
   CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT") &&
                           !Contains("HAS_RADIOSITY"));
-  CHECK_THAT(text, Contains("#line 1 \"kernels/lib/ray_splat.cl\""));
+  CHECK_THAT(text, Contains("#line 1 \"kernels/surface/disc.cl\""));
 }
 
 TEST_CASE("info tells what a file holds, and devices list and check") {

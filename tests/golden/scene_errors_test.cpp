@@ -31,7 +31,7 @@ std::string error_of(const fs::path& scene) {
   try {
     load_scene(scene.string());
   } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::input);
+    CHECK(error.kind() == ErrorKind::input);
     return without(scene.parent_path().string() + "/", error.what());
   }
   return "(it loads)";

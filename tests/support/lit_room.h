@@ -2,8 +2,8 @@
 /// A closed room with a bumpy body, a block and a lamp under the ceiling, ready for both ways of radiosity.
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
-#include "host/passes/point_irradiance.h"
-#include "host/passes/variant_list.h"
+#include "host/radiosity/point_irradiance.h"
+#include "host/tune/variant_list.h"
 #include "tests/support/rooms.h"
 
 namespace pointgi::test {

@@ -4,8 +4,8 @@
 #include "host/app/prepare.h"
 #include "host/app/stages.h"
 #include "host/passes/build_pools.h"
-#include "host/passes/photon.h"
-#include "host/passes/variant_list.h"
+#include "host/photon/trace_photons.h"
+#include "host/tune/variant_list.h"
 #include "tests/support/device.h"
 #include "tests/support/temporary_folder.h"
 #include <fstream>

@@ -2,7 +2,7 @@
 #include "fmm/operators/fmm_operator.h"
 #include "fmm/ref/direct_sum.h"
 #include "host/cloud/complete.h"
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 #include "host/scene/frame.h"
 #include "tests/support/exchange.h"
 #include "tests/support/scans.h"

@@ -120,7 +120,7 @@ TEST_CASE("atomic file: places that cannot be written are output errors with a r
   };
   for (const Case& c : cases) {
     const Error error = error_of_opening(c.path);
-    CHECK(error.code() == ExitCode::output);
+    CHECK(error.kind() == ErrorKind::output);
     CHECK_THAT(error.what(), Contains(c.path) && Contains(c.says));
   }
   CHECK(::access("/dev/full", F_OK) == 0);
@@ -138,7 +138,7 @@ TEST_CASE("atomic file: a folder or file without write permission is an output e
     const WithoutRoot plain_user;
     CHECK_THAT(error_of_opening(locked).what(), Contains(locked) && Contains("write-protected"));
     const Error error = error_of_opening(folder.file("read_only/a"));
-    CHECK(error.code() == ExitCode::output);
+    CHECK(error.kind() == ErrorKind::output);
     CHECK_THAT(error.what(), Contains(folder.file("read_only")) && Contains("you may write to"));
   }
   ::chmod(folder.file("read_only").c_str(), 0755);
@@ -156,19 +156,19 @@ TEST_CASE("atomic file: a write that fails midway leaves the old file whole") {
   tight.rlim_cur = 4096;
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &tight) == 0);
   std::string message;
-  ExitCode code = ExitCode::done;
+  ErrorKind kind = ErrorKind::internal;
   try {
     AtomicFile file(path);
     const std::string much(10000, 'x');
     file.write(much.data(), much.size());
     file.commit();
   } catch (const Error& error) {
-    code = error.code();
+    kind = error.kind();
     message = error.what();
   }
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, old_handler);
-  CHECK(code == ExitCode::output);
+  CHECK(kind == ErrorKind::output);
   CHECK_THAT(message, Contains(path) && Contains("larger than"));
   CHECK(contents(path) == "old");
   CHECK(folder.entries() == 1);

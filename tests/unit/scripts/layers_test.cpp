@@ -19,19 +19,20 @@ public:
     put("kernels/shared/scalar.h", "#ifdef __cplusplus\n#include <cstdint>\n#endif\n");
     put("kernels/shared/types.h", "#include \"shared/scalar.h\"\n");
     put("kernels/lib/rng.h", "#include \"shared/types.h\"\n");
-    put("kernels/fmm/m2l.cl", "#include \"lib/rng.h\"\n#include \"shared/types.h\"\n#include \"fmm/m2l_block.h\"\n");
-    put("kernels/fmm/m2l_block.h", "");
+    put("kernels/radiosity/fmm/m2l.cl",
+        "#include \"lib/rng.h\"\n#include \"shared/types.h\"\n#include \"radiosity/fmm/m2l_block.h\"\n");
+    put("kernels/radiosity/fmm/m2l_block.h", "");
     put("kernels/render/render.cl", "#include \"lib/rng.h\"\n");
     put("octree/build/tree.h", "#include \"shared/types.h\"\n#include <vector>\n");
     put("fmm/lists/lists.h", "#include \"octree/build/tree.h\"\n#include \"shared/types.h\"\n");
     put("host/error.h", "#include <string>\n");
     put("host/cl/device.h", "#include \"host/error.h\"\n#include <CL/opencl.hpp>\n");
-    put("host/cloud/ply.h", "#include \"host/error.h\"\n#include \"octree/build/tree.h\"\n");
+    put("host/cloud/readers/ply.h", "#include \"host/error.h\"\n#include \"octree/build/tree.h\"\n");
     put("host/image/srgb.h", "#include \"host/error.h\"\n");
-    put("host/scene/scene.h", "#include \"host/cloud/ply.h\"\n#include \"host/image/srgb.h\"\n");
-    put("host/photon/plan.h", "#include \"host/scene/scene.h\"\n");
-    put("host/passes/run.h", "#include \"host/cl/device.h\"\n#include \"host/photon/plan.h\"\n"
+    put("host/scene/scene.h", "#include \"host/cloud/readers/ply.h\"\n#include \"host/image/srgb.h\"\n");
+    put("host/passes/run.h", "#include \"host/cl/device.h\"\n#include \"host/scene/scene.h\"\n"
                              "#include \"fmm/lists/lists.h\"\n  #  include \"shared/types.h\"\n");
+    put("host/photon/plan.h", "#include \"host/passes/run.h\"\n");
     put("host/app/main.cpp", "#include \"host/passes/run.h\"\n#include <CLI/CLI.hpp>\n");
     put("tests/support/scans.h", "#include \"host/app/main.cpp\"\n#include <CL/cl.h>\n");
     put("tests/unit/scans_test.cpp", "#include \"tests/support/scans.h\"\n");
@@ -71,15 +72,17 @@ TEST_CASE("a tree whose includes follow the arrows passes", "[scripts]") {
 TEST_CASE("an include against the arrows is found by file and line", "[scripts]") {
   const BadInclude bad = GENERATE(
       BadInclude{"kernels/shared/bad.h", "\"lib/rng.h\""}, BadInclude{"kernels/shared/bad.h", "\"host/error.h\""},
-      BadInclude{"kernels/lib/bad.h", "\"fmm/m2l_block.h\""}, BadInclude{"kernels/render/bad.cl", "\"fmm/m2l.cl\""},
+      BadInclude{"kernels/lib/bad.h", "\"radiosity/fmm/m2l_block.h\""},
+      BadInclude{"kernels/render/bad.cl", "\"radiosity/fmm/m2l.cl\""},
       BadInclude{"kernels/render/bad.cl", "\"octree/build/tree.h\""}, BadInclude{"octree/build/bad.h", "\"lib/rng.h\""},
       BadInclude{"octree/bad.cpp", "\"fmm/lists/lists.h\""}, BadInclude{"octree/bad.cpp", "\"host/error.h\""},
       BadInclude{"fmm/bad.cpp", "\"host/error.h\""}, BadInclude{"fmm/bad.cpp", "<CL/cl.h>"},
-      BadInclude{"fmm/bad.cpp", "\"tests/support/scans.h\""}, BadInclude{"host/bad.h", "\"host/cloud/ply.h\""},
+      BadInclude{"fmm/bad.cpp", "\"tests/support/scans.h\""}, BadInclude{"host/bad.h", "\"host/cloud/readers/ply.h\""},
       BadInclude{"host/cloud/bad.h", "\"host/scene/scene.h\""}, BadInclude{"host/cloud/bad.h", "\"host/image/srgb.h\""},
-      BadInclude{"host/scene/bad.h", "\"host/photon/plan.h\""}, BadInclude{"host/photon/bad.h", "\"host/cl/device.h\""},
-      BadInclude{"host/cl/bad.h", "\"host/cloud/ply.h\""}, BadInclude{"host/image/bad.h", "\"host/scene/scene.h\""},
-      BadInclude{"host/image/bad.h", "<octree/build/tree.h>"},
+      BadInclude{"host/scene/bad.h", "\"host/photon/plan.h\""},
+      BadInclude{"host/passes/bad.h", "\"host/photon/plan.h\""},
+      BadInclude{"host/cl/bad.h", "\"host/cloud/readers/ply.h\""},
+      BadInclude{"host/image/bad.h", "\"host/scene/scene.h\""}, BadInclude{"host/image/bad.h", "<octree/build/tree.h>"},
       BadInclude{"host/passes/bad.cpp", "\"host/app/main.cpp\""}, BadInclude{"host/passes/bad.cpp", "<CL/opencl.hpp>"},
       BadInclude{"host/passes/bad.cpp", "\"tests/support/scans.h\""}, BadInclude{"host/passes/bad.cpp", "\"run.h\""},
       BadInclude{"host/passes/bad.cpp", "\"../error.h\""}, BadInclude{"host/new/bad.cpp", "\"host/error.h\""});

@@ -1,4 +1,4 @@
-#include "host/cloud/ply.h"
+#include "host/cloud/readers/ply.h"
 #include "tests/support/scans.h"
 #include "tests/unit/host/cloud/completed_cloud.h"
 #include "tests/unit/host/cloud/sampled_surfaces.h"

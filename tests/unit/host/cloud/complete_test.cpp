@@ -136,7 +136,7 @@ TEST_CASE("clouds of which nothing is left, or that lack what is asked for, are 
       complete_cloud(cloud, options, report);
       FAIL("not refused: " + word);
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::input);
+      CHECK(error.kind() == ErrorKind::input);
       CHECK(std::string(error.what()).find(word) != std::string::npos);
     }
   };

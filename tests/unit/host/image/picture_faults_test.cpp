@@ -31,7 +31,7 @@ std::optional<Error> error_of_writing(const std::string& path, int height = 400)
 
 void check_output_error(const std::optional<Error>& error, const std::string& where, const std::string& what) {
   REQUIRE(error);
-  CHECK(error->code() == ExitCode::output);
+  CHECK(error->kind() == ErrorKind::output);
   CHECK_THAT(error->what(), Catch::Contains(where));
   CHECK_THAT(error->what(), Catch::Contains(what));
   CHECK_THAT(error->what(), Catch::Contains("; ")); // a remedy follows
@@ -175,7 +175,7 @@ TEST_CASE("what is no EXR picture is refused as input", "[picture]") {
       read_exr(path);
       FAIL("accepted");
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::input);
+      CHECK(error.kind() == ErrorKind::input);
       CHECK_THAT(error.what(), Catch::Contains(path));
     }
   };

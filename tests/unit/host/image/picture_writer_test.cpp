@@ -8,6 +8,7 @@
 #include <ImfThreading.h>
 #include <catch2/catch.hpp>
 #include <limits>
+#include <optional>
 
 using namespace pointgi;
 using namespace pointgi::test::picture;
@@ -174,7 +175,7 @@ TEST_CASE("bands that do not fit are refused", "[picture]") {
       writer.write(wrong);
       FAIL("accepted " << wrong.rows << " rows from " << wrong.first_row);
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::internal);
+      CHECK(error.kind() == ErrorKind::internal);
       CHECK_THAT(error.what(), Catch::Contains("does not fit"));
     }
   }
@@ -189,21 +190,21 @@ TEST_CASE("bands that do not fit are refused", "[picture]") {
 TEST_CASE("channels and windows that make no picture are refused", "[picture]") {
   const Folder folder;
   const std::string path = folder.file("a.exr");
-  auto code_of = [&](PixelWindow window, const std::vector<ChannelName>& channels) {
+  auto kind_of = [&](PixelWindow window, const std::vector<ChannelName>& channels) -> std::optional<ErrorKind> {
     try {
       PictureWriter writer(path, 8, 6, window, channels, {}, 0.0);
     } catch (const Error& error) {
-      return error.code();
+      return error.kind();
     }
-    return ExitCode::done;
+    return std::nullopt;
   };
   for (const PixelWindow window : {PixelWindow{0, 9, 0, 6}, PixelWindow{0, 8, 0, 7}, PixelWindow{-1, 8, 0, 6},
                                    PixelWindow{0, 8, -1, 6}, PixelWindow{4, 4, 0, 6}, PixelWindow{0, 8, 5, 3}})
-    CHECK(code_of(window, rgb_channels()) == ExitCode::usage);
+    CHECK(kind_of(window, rgb_channels()) == ErrorKind::usage);
   const PixelWindow all{0, 8, 0, 6};
-  CHECK(code_of(all, {{"R", false}, {"G", false}}) == ExitCode::internal);
-  CHECK(code_of(all, {{"R", false}, {"G", false}, {"B", false}, {"G", false}}) == ExitCode::internal);
-  CHECK(code_of(all, {{"R", false}, {"G", false}, {"B", true}}) == ExitCode::internal);
+  CHECK(kind_of(all, {{"R", false}, {"G", false}}) == ErrorKind::internal);
+  CHECK(kind_of(all, {{"R", false}, {"G", false}, {"B", false}, {"G", false}}) == ErrorKind::internal);
+  CHECK(kind_of(all, {{"R", false}, {"G", false}, {"B", true}}) == ErrorKind::internal);
   CHECK(folder.names().empty());
 }
 

@@ -1,4 +1,4 @@
-#include "host/passes/variant_list.h"
+#include "host/tune/variant_list.h"
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -108,5 +108,5 @@ TEST_CASE("each program is listed once, with the devices that may run it") {
     cpu_only += !use.gpu;
   }
   CHECK(cpu_only > 0);
-  CHECK(seen.count("traverse/probe.cl " + build_options(reference_variant())) == 1);
+  CHECK(seen.count("test/probe.cl " + build_options(reference_variant())) == 1);
 }

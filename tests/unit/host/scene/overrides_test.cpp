@@ -85,7 +85,7 @@ TEST_CASE("overrides that cannot be read are mistakes of the command line", "[sc
       folder.load(small_scene, {set});
       FAIL("loaded");
     } catch (const Error& error) {
-      CHECK(error.code() == ExitCode::usage);
+      CHECK(error.kind() == ErrorKind::usage);
       CHECK_THAT(error.what(), Catch::StartsWith("--set " + set.substr(0, 20)));
     }
   }

@@ -270,7 +270,7 @@ TEST_CASE("too many splats are refused before memory is taken", "[scene]") {
         sampled(shape, spacing);
         FAIL("sampled");
       } catch (const Error& error) {
-        CHECK(error.code() == ExitCode::input);
+        CHECK(error.kind() == ErrorKind::input);
         CHECK_THAT(error.what(), Catch::StartsWith("scene.toml:7:1: the shape's spacing 1e-"));
         CHECK_THAT(error.what(), Catch::Contains("splats, expected at most 1e+08; set its spacing to "));
       }

@@ -1,0 +1,206 @@
+#include "host/photon/trace_photons.h"
+#include "host/passes/visibility.h"
+#include "host/photon/diffuse_photons.h"
+#include "host/photon/kept_photons.h"
+#include <algorithm>
+
+namespace pointgi {
+
+namespace {
+
+/// A launch aims at this many seconds, as the render stage's do.
+constexpr double launch_seconds = 0.1;
+constexpr std::size_t first_batch = 1u << 12, fewest = 1u << 8, most_at_once = 1u << 18, group = 64;
+
+void add(const float power[3], std::array<double, 3>& to) {
+  for (std::size_t c = 0; c < 3; ++c)
+    to[c] += double{power[c]};
+}
+
+Photon stored_photon(const PhotonFlight& flight) {
+  Photon photon{};
+  std::copy_n(flight.position, 3, photon.position);
+  photon.inward = flight.inward;
+  for (int c = 0; c < 3; ++c)
+    photon.power[c] = flight.power[c] * flight.seen;
+  photon.splat = flight.splat;
+  return photon;
+}
+
+/// Enters a photon that has ended.
+void book(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger, KeptPhotons& kept) {
+  ++ledger.aimed;
+  if (flight.end == PHOTON_ASIDE) return;
+  ++ledger.emitted;
+  add(flight.emitted, ledger.emitted_power);
+  add(flight.absorbed, ledger.absorbed_power);
+  switch (flight.end) {
+  case PHOTON_STORED:
+    ++ledger.stored;
+    add(flight.power, ledger.stored_power);
+    kept.add(stored_photon(flight), number);
+    break;
+  case PHOTON_ABSORBED:
+    ++ledger.absorbed;
+    add(flight.power, ledger.absorbed_power);
+    break;
+  case PHOTON_ESCAPED:
+    ++ledger.escaped;
+    add(flight.power, ledger.escaped_power);
+    break;
+  default:
+    ++ledger.cut;
+    add(flight.power, ledger.cut_power);
+  }
+}
+
+SceneFeatures features_of(const DeviceLighting& lighting) {
+  SceneFeatures features;
+  features.specular = true;
+  features.glass = lighting.has_type(MATERIAL_GLASS);
+  features.phong = lighting.has_type(MATERIAL_PHONG);
+  return features;
+}
+
+/// Of the light that a splat receives, on both sides together where it has two, about how much goes on by mirror or
+/// lobe.
+double passed_on(const Material& material) {
+  if (material.type == MATERIAL_DIFFUSE) return 0.0;
+  if (material.type == MATERIAL_GLASS) return 2.0;
+  return double{*std::max_element(material.specular, material.specular + 3)};
+}
+
+auto is_specular(const DeviceLighting& lighting) {
+  return [&lighting](const Splat& s) {
+    return lighting.materials[static_cast<std::size_t>(s.material)].type != MATERIAL_DIFFUSE;
+  };
+}
+
+} // namespace
+
+void add(const PhotonLedger& ledger, PhotonLedger& to) {
+  for (const auto member : {&PhotonLedger::aimed, &PhotonLedger::emitted, &PhotonLedger::stored,
+                            &PhotonLedger::absorbed, &PhotonLedger::escaped, &PhotonLedger::cut, &PhotonLedger::kept})
+    to.*member += ledger.*member;
+  for (const auto member : {&PhotonLedger::emitted_power, &PhotonLedger::stored_power, &PhotonLedger::absorbed_power,
+                            &PhotonLedger::escaped_power, &PhotonLedger::cut_power})
+    for (std::size_t c = 0; c < 3; ++c)
+      (to.*member)[c] += (ledger.*member)[c];
+  to.device_seconds += ledger.device_seconds;
+}
+
+TracedPhotons trace_photons(Session& session, const DevicePools& pools, const PhotonRequest& request,
+                            const FlightControl& control) {
+  TracedPhotons traced;
+  if (request.plan.photons == 0) return traced;
+  const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.start);
+  cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
+  RenderParams params = request.lighting.params;
+  params.seed += request.flight * 0x9e3779b9u;
+  params.step_delta = static_cast<float>(request.variant.step_delta / request.side);
+  std::copy_n(request.sources.environment.begin(), 3, params.environment);
+  params.delta_lights = static_cast<pg_uint>(request.sources.delta.size());
+  params.emitters = static_cast<pg_uint>(request.sources.emitters.size());
+  const auto device_params = session.upload(&params, 1);
+  const auto materials = session.upload(request.lighting.materials);
+  const auto delta = session.upload(request.sources.delta);
+  const auto emitters = session.upload(request.sources.emitters);
+  const auto radiance = session.upload(request.sources.radiance);
+  const auto aims = session.upload(request.plan.aims);
+  const auto leaves = session.upload(request.leaves.leaves);
+  const auto splats = session.upload(request.leaves.splats);
+  const auto leaf_of = session.upload(request.leaves.leaf_of);
+  const std::size_t photons = request.plan.photons;
+  std::size_t batch = std::min(photons, request.batch > 0 ? request.batch : first_batch);
+  const std::size_t room = std::min(photons, request.batch > 0 ? request.batch : most_at_once);
+  const auto flights = session.allocate<PhotonFlight>(room);
+  KeptPhotons kept(control.most_stored, request.lighting.params.seed);
+  for (std::size_t first = 0; first < photons;) {
+    if (control.stop()) {
+      traced.stopped = true;
+      return traced;
+    }
+    const std::size_t count = std::min(batch, photons - first);
+    const double seconds = session.launch(
+        kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points, request.normal_field,
+        device_params, materials, delta, emitters, radiance, aims, leaves, splats, leaf_of, flights,
+        static_cast<cl_uint>(request.plan.aims.size()), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
+    traced.ledger.device_seconds += seconds;
+    auto number = static_cast<std::uint32_t>(first);
+    for (const PhotonFlight& flight : session.download(flights, count))
+      book(flight, number++, traced.ledger, kept);
+    first += count;
+    if (control.progress) control.progress(static_cast<double>(first) / static_cast<double>(photons));
+    if (request.batch > 0) continue;
+    if (seconds < 0.5 * launch_seconds && count == batch) batch = std::min(2 * batch, room);
+    if (seconds > 2.0 * launch_seconds) batch = std::max(batch / 2, fewest);
+  }
+  traced.one_of = kept.one_of();
+  traced.stored = kept.take();
+  traced.ledger.kept = traced.stored.size();
+  return traced;
+}
+
+PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points) {
+  PhotonSources sources;
+  sources.delta = lighting.delta;
+  sources.emitters = lighting.emitters;
+  for (const Emitter& emitter : lighting.emitters) {
+    const float* e = lighting.materials[static_cast<std::size_t>(points[emitter.point].material)].emission;
+    sources.radiance.push_back({e[0], e[1], e[2], 0.0f});
+  }
+  std::copy_n(lighting.params.environment, 3, sources.environment.begin());
+  return sources;
+}
+
+TracedPhotons send_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                           const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
+                           const Buffer<cl_float4>& normal_field, const CausticSettings& settings, double side,
+                           const FlightControl& control) {
+  const bool equal_power = settings.power == "equal";
+  const std::size_t lights = sources.delta.size() + 2;
+  const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), most_photon_pairs / lights, equal_power);
+  const auto ask = [&](View<Splat> table, View<Segment> segments) {
+    const auto step_delta = static_cast<float>(variant.step_delta / side);
+    return DeviceVisibility(session, pools, variant, table, step_delta).blocked(segments);
+  };
+  EmissionOptions options;
+  options.photons = static_cast<std::uint64_t>(settings.photons);
+  options.equal_power = equal_power;
+  options.seed = lighting.params.seed;
+  const EmissionPlan plan = plan_emission(leaves, points, sources, ask, options);
+  const PhotonStart start = equal_power ? PhotonStart::equal_power : PhotonStart::aimed;
+  return trace_photons(session, pools, {lighting, sources, leaves, plan, normal_field, variant, side, start}, control);
+}
+
+TracedPhotons send_photons_from_surfaces(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                                         const DeviceLighting& lighting, View<float> radiosity, View<Splat> points,
+                                         const Buffer<cl_float4>& normal_field, std::uint32_t photons,
+                                         std::uint32_t flight, double side, const FlightControl& control) {
+  const PhotonSources sources = sources_of_radiosity(radiosity, points, [&](const Splat& s) {
+    return passed_on(lighting.materials[static_cast<std::size_t>(s.material)]);
+  });
+  const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), 1, false);
+  EmissionPlan plan;
+  if (photons > 0 && !sources.emitters.empty()) {
+    plan.aims.push_back({0, photons, AIM_EMITTERS, NO_PHOTON_LEAF, 1.0f / static_cast<float>(photons)});
+    plan.photons = photons;
+  }
+  PhotonRequest request{lighting, sources, leaves, plan, normal_field, variant, side, PhotonStart::from_surfaces};
+  request.flight = flight;
+  return trace_photons(session, pools, request, control);
+}
+
+std::vector<cl_float4> caustic_irradiance(Session& session, const DevicePhotonMap& map,
+                                          const std::vector<cl_float4>& places) {
+  const Program program = caustic_irradiance_program(map.k);
+  cl::Kernel kernel = session.kernel(program.file, program.options, "caustic_irradiance");
+  const std::size_t count = places.size() / 2;
+  const auto device_places = session.upload(places);
+  const auto irradiance = session.allocate<cl_float4>(count);
+  session.launch(kernel, LaunchShape::line(count), map.nodes, map.buckets, map.params, device_places, irradiance,
+                 static_cast<cl_uint>(count));
+  return session.download(irradiance, count);
+}
+
+} // namespace pointgi

@@ -1,0 +1,115 @@
+#include "host/radiosity/direct.h"
+#include "host/error.h"
+#include "host/passes/variant.h"
+#include "host/radiosity/point_planes.h"
+#include <cmath>
+
+namespace pointgi {
+
+namespace {
+
+std::string megabytes(std::uint64_t bytes) {
+  return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
+
+} // namespace
+
+void DeviceDirect::make_bands(const DirectOptions& options) {
+  const DeviceInfo& info = session_.info();
+  const std::uint64_t row_bytes = static_cast<std::uint64_t>(FMM_LANES) * tiles_, wanted = row_bytes * tiles_;
+  // What was held at most is what is held now, or a little more.
+  std::uint64_t left = info.memory_bytes - std::min(info.memory_bytes, session_.peak_bytes());
+  if (info.is_cpu) left /= 2; // the same memory holds what the host has
+  const std::uint64_t available = options.memory_bytes != 0 ? options.memory_bytes : left;
+  if (wanted > available)
+    throw Error(ErrorKind::memory, info.name + ": radiosity.method = \"direct\" keeps a bit for each pair of its " +
+                                       std::to_string(points_.size()) + " points, " + megabytes(wanted) +
+                                       ", and the device has " + megabytes(available) +
+                                       " left; use method = \"fmm\", a coarser spacing, or another --device");
+  const std::uint64_t piece = options.allocation_bytes != 0 ? options.allocation_bytes : info.max_allocation_bytes;
+  const auto rows = static_cast<cl_uint>(std::clamp<std::uint64_t>(piece / row_bytes, 1, tiles_));
+  for (cl_uint first = 0; first < tiles_; first += rows) {
+    const cl_uint end = std::min(tiles_, first + rows);
+    bands_.push_back({session_.allocate<cl_uchar>(row_bytes * (end - first)), first, end});
+  }
+}
+
+template <class Launch>
+void DeviceDirect::in_windows(const Band& of_rows, const Band& of_columns, Pace& pace, const Launch& launch) {
+  for (cl_uint row = of_rows.first; row < of_rows.end;) {
+    // So many rows h that h (w + h), more than lie below the diagonal, is a launch's work.
+    const double w = row - of_columns.first, work = pace.of_a_launch();
+    const auto most = static_cast<cl_uint>(std::max(1.0, 0.5 * (std::sqrt(w * w + 4.0 * work) - w)));
+    const cl_uint rows = std::min(of_rows.end - row, most), end = std::min(of_columns.end, row + rows);
+    const auto columns = static_cast<cl_uint>(std::max(1.0, work / rows)); // a row may be more than a launch
+    for (cl_uint column = of_columns.first; column < end; column += columns)
+      launch(column, std::min(columns, end - column), row, rows);
+    row += rows;
+  }
+}
+
+void DeviceDirect::trace(const DevicePools& pools, const TraversalVariant& variant, View<Splat> points,
+                         const DirectOptions& options) {
+  const Program program = pairs_program(variant);
+  cl::Kernel kernel = session_.kernel(program.file, program.options, "pairs_visible");
+  const auto table = session_.upload(points.data, points.size);
+  const auto rays = session_.allocate<cl_uint>(1);
+  Pace pace{2e4}; // tiles
+  double done = 0.0;
+  const double all = 0.5 * tiles_ * (tiles_ + 1.0);
+  for (const Band& of_rows : bands_)
+    for (const Band& of_columns : bands_) {
+      if (of_columns.first > of_rows.first) break;
+      in_windows(of_rows, of_columns, pace, [&](cl_uint column, cl_uint columns, cl_uint row, cl_uint rows) {
+        session_.fill(rays, cl_uint{0}, 1);
+        const double seconds = session_.launch(
+            kernel, LaunchShape::grid(columns, rows, variant.group.size(), 1), pools.nodes, pools.leaves, pools.points,
+            table, static_cast<cl_uint>(points.size), cl_uint4{{column, columns, row, rows}}, of_rows.bits,
+            of_columns.bits, cl_uint2{{of_rows.first, of_columns.first}}, tiles_, rays, options.step_delta);
+        rays_ += session_.download(rays, 1)[0];
+        trace_seconds_ += seconds;
+        double tiles = 0.0;
+        for (cl_uint r = row; r < row + rows; ++r)
+          tiles += r < column ? 0.0 : std::min(columns, r - column + 1);
+        pace.learn(tiles, seconds);
+        done += tiles;
+        if (options.progress) options.progress(done / all);
+      });
+    }
+}
+
+DeviceDirect::DeviceDirect(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                           View<Splat> points, const DirectOptions& options)
+    : session_(session), points_(points.begin(), points.end()),
+      tiles_(static_cast<cl_uint>((points.size + FMM_LANES - 1) / FMM_LANES)), stride_(plane_stride(points.size)) {
+  if (points.size == 0) return;
+  make_bands(options);
+  point_buffer_ = session_.upload(point_planes(points_, stride_));
+  irradiance_ = session_.allocate<cl_float>(3 * static_cast<std::size_t>(stride_));
+  const Program program = fmm_program("radiosity/direct/receive_from_all.cl");
+  receive_ = session_.kernel(program.file, program.options, "receive_from_all");
+  trace(pools, variant, points, options);
+}
+
+void DeviceDirect::apply(View<double> radiosity, Judge, std::vector<double>& irradiance) {
+  irradiance.clear();
+  if (points_.empty()) return;
+  const auto flux = session_.upload(flux_planes(radiosity, points_, stride_));
+  const std::size_t group = session_.info().is_cpu ? 8 : 32;
+  const auto sources = static_cast<cl_uint>(points_.size());
+  for (const Band& band : bands_)
+    for (cl_uint row = band.first; row < band.end;) {
+      const double pairs = static_cast<double>(FMM_LANES) * sources; // a row
+      // Not fewer than keep the device busy, even if that takes longer.
+      const double fits = std::max(pairs_.of_a_launch() / pairs, 16.0 * static_cast<double>(group));
+      const auto rows = static_cast<cl_uint>(std::min<double>(band.end - row, fits));
+      const double seconds = session_.launch(receive_, LaunchShape::line(rows, group), row, rows, band.bits, band.first,
+                                             FMM_LANES * tiles_, point_buffer_, sources, stride_, flux, irradiance_);
+      apply_seconds_ += seconds;
+      pairs_.learn(pairs * rows, seconds);
+      row += rows;
+    }
+  irradiance = rows_of_planes(session_.download(irradiance_, irradiance_.size), points_.size(), stride_);
+}
+
+} // namespace pointgi

@@ -1,0 +1,64 @@
+#pragma once
+/// A tile of the picture on the device: hits of its eye rays, then its film.
+#include "host/passes/device_pools.h"
+#include "host/photon/device_photon_map.h"
+#include "host/render/light_paths.h"
+#include "host/scene/lighting.h"
+
+namespace pointgi {
+
+/// Device seconds of a tile's two kernels.
+struct TileSeconds {
+  double eye = 0.0;   ///< nearest hits of the eye rays
+  double shade = 0.0; ///< everything after these
+  double all() const { return eye + shade; }
+};
+
+/// The picture's kernels in a variant, with all of their arguments but the tile's place. Borrows session and pools.
+class TileRenderer {
+public:
+  /// `side`: of the root cube, world units; `paths`: by path tracing; else
+  /// `irradiance`, of each point, is reflected too where it is there, and instead of shadow rays' light without
+  /// `shadow_rays`. Without a `normal_field` no surface is specular: all but diffuse ones look black.
+  /// Builds the programs where they are not built yet.
+  TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
+               const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
+               const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
+               const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr);
+
+  pg_uint samples() const { return params_.samples; }
+
+  /// One pass of up to 32 samples over a tile of the image; returns the device's seconds.
+  TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
+
+  /// Scalars a pixel of the film: FILM_CHANNELS, or FILM_CHANNELS_SPECULAR with a normal field.
+  std::size_t film_channels() const {
+    return photons_ != nullptr        ? FILM_CHANNELS_CAUSTIC
+           : normal_field_ != nullptr ? FILM_CHANNELS_SPECULAR
+                                      : FILM_CHANNELS;
+  }
+
+  /// The film of the last tile, film_channels() a pixel: sums over the samples of all passes since the first.
+  std::vector<float> film(int columns, int rows);
+
+  /// What the eye rays of its last pass met, pixel after pixel; GRID_RAYS a pixel whatever the number of samples.
+  std::vector<EyeHits> hits(int columns, int rows);
+
+private:
+  Session& session_;
+  const DevicePools& pools_;
+  RenderParams params_;
+  RayGrouping grouping_;
+  WorkGroup eye_group_, shade_group_;
+  cl::Kernel eye_rays_, shade_;
+  Buffer<RenderParams> device_params_;
+  Buffer<Material> materials_;
+  Buffer<DeltaLight> delta_;
+  Buffer<Emitter> emitters_;
+  const Buffer<cl_float4>*irradiance_, *normal_field_;
+  const DevicePhotonMap* photons_;
+  Buffer<EyeHits> hits_;
+  Buffer<float> film_;
+};
+
+} // namespace pointgi

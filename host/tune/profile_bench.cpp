@@ -1,0 +1,232 @@
+#include "host/tune/profile_bench.h"
+#include "host/error.h"
+#include "host/passes/ray_packets.h"
+#include "host/tune/profile_rays.h"
+#include <algorithm>
+
+namespace pointgi {
+
+namespace {
+
+std::size_t at(ProfiledKernel kernel) {
+  return static_cast<std::size_t>(kernel);
+}
+
+constexpr std::size_t first_rays = 4096, fewest_rays = 1024, most_rays = std::size_t{1} << 22;
+/// Of a picture: 1024 pixels, so that groups of 64 pixels still keep several cores busy.
+constexpr std::size_t fewest_picture_rays = 1024 * GRID_RAYS;
+
+/// Tests of one ray with one splat that the linear scan may take: about a second.
+constexpr std::size_t scan_tests = std::size_t{1} << 28;
+
+} // namespace
+
+std::string tree_key(const TraversalVariant& v) {
+  return std::string(name_of(v.form)) + " " + std::to_string(v.axis_bits) + " " + name_of(v.order) + " " +
+         std::to_string(v.leaf_capacity) + " " + std::to_string(v.form == TraversalForm::wide ? v.lanes : 0) + " " +
+         std::to_string(v.max_depth);
+}
+
+std::string pools_key(const TraversalVariant& v) {
+  return tree_key(v) + " " + name_of(v.storage);
+}
+
+ProfileBench::ProfileBench(Session& session, const ProfileRequest& request) : session_(session), request_(request) {}
+
+ProfiledPools ProfileBench::load(const TraversalVariant& variant) {
+  if (last_key_ != tree_key(variant)) {
+    last_pools_ = build_pools(request_.splats, variant);
+    auto tree = std::make_shared<ProfiledTree>();
+    tree->source.assign(source_of(last_pools_).begin(), source_of(last_pools_).end());
+    tree->lighting = device_lighting(request_.scene, request_.frame, points_of(last_pools_));
+    tree->bytes = summary_of(last_pools_).bytes;
+    last_tree_ = tree;
+    last_key_ = tree_key(variant);
+  }
+  if (!images_fit(session_.info(), last_pools_, variant.storage))
+    throw Error(ErrorKind::device, "the device's images are too small for these pools");
+  return {last_tree_, upload_pools(session_, last_pools_, variant.storage)};
+}
+
+void ProfileBench::set_rays(ProfiledKernel kernel, std::size_t count) {
+  const RenderSettings& picture = request_.scene.render;
+  if (kernel == ProfiledKernel::eye) {
+    eye_window_ = middle_window(picture.width, picture.height, count / GRID_RAYS);
+    const auto rays = eye_rays(device_camera(request_.scene, request_.frame), eye_window_);
+    eye_ = session_.upload(rays);
+    rays_[at(kernel)] = eye_.size;
+    eye_packets_ = session_.upload(packets_of(rays));
+    packet_answers_ = session_.allocate<RayPacketAnswer>(eye_packets_.size);
+  } else if (kernel == ProfiledKernel::render) {
+    render_window_ = middle_window(picture.width, picture.height, count / GRID_RAYS);
+  } else {
+    bounced_ = session_.upload(bounced_rays(request_.splats, count, request_.seed));
+    rays_[at(ProfiledKernel::bounced)] = rays_[at(ProfiledKernel::any)] = count;
+    blocked_ = session_.allocate<cl_uint>(count);
+  }
+  answers_ = session_.allocate<RayAnswer>(std::max(eye_.size, bounced_.size));
+}
+
+double ProfileBench::trace(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools) {
+  const Program program = trace_program(variant);
+  const DevicePools& p = pools.device;
+  const bool packets = kernel == ProfiledKernel::eye && variant.grouping == RayGrouping::packet;
+  const bool any = kernel == ProfiledKernel::any;
+  cl::Kernel traced = session_.kernel(program.file, program.options,
+                                      packets ? "trace_packets"
+                                      : any   ? "trace_any_rays"
+                                              : "trace_closest_rays");
+  const Buffer<RayQuery>& rays = kernel == ProfiledKernel::eye ? eye_ : bounced_;
+  const std::size_t count = packets ? eye_packets_.size : rays.size;
+  const LaunchShape shape = LaunchShape::line(count, packets ? 1 : variant.group.size()); // packets as render has them
+  const auto number = static_cast<cl_uint>(count);
+  if (packets)
+    return session_.launch(traced, shape, p.nodes, p.leaves, p.points, eye_packets_, packet_answers_, number);
+  if (any) return session_.launch(traced, shape, p.nodes, p.leaves, p.points, rays, blocked_, number, 0.0f);
+  return session_.launch(traced, shape, p.nodes, p.leaves, p.points, rays, answers_, number, 0.0f);
+}
+
+double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers) {
+  TileRenderer tiles(session_, pools.device, pools.tree->lighting, request_.frame.side, variant);
+  const PixelWindow& w = render_window_;
+  const double seconds = tiles.launch(w.x0, w.y0, w.x1 - w.x0, w.y1 - w.y0, 0).all();
+  if (answers == nullptr) return seconds;
+  answers->film = tiles.film(w.x1 - w.x0, w.y1 - w.y0);
+  const auto rays = std::min<pg_uint>(tiles.samples(), GRID_RAYS);
+  for (const EyeHits& pixel : tiles.hits(w.x1 - w.x0, w.y1 - w.y0))
+    for (pg_uint k = 0; k < rays; ++k)
+      answers->hits.push_back({pixel.t[k], pixel.splat[k]});
+  to_inputs(answers->hits, pools.tree->source);
+  return seconds;
+}
+
+double ProfileBench::launch(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools) {
+  session_.label_launches(name_of(variant) + " " + name_of(kernel));
+  return kernel == ProfiledKernel::render ? render(variant, pools, nullptr) : trace(kernel, variant, pools);
+}
+
+ProfileBench::Answers ProfileBench::answers(ProfiledKernel kernel, const TraversalVariant& variant,
+                                            const ProfiledPools& pools) {
+  session_.label_launches(name_of(variant) + " " + name_of(kernel) + ", checked");
+  Answers found;
+  if (kernel == ProfiledKernel::render) {
+    render(variant, pools, &found);
+    return found;
+  }
+  // What a kernel leaves unwritten must not be another one's right answer.
+  const std::size_t count = kernel == ProfiledKernel::eye ? eye_.size : bounced_.size;
+  if (kernel == ProfiledKernel::any) {
+    session_.fill(blocked_, 0xffffffffu, count);
+    trace(kernel, variant, pools);
+    found.blocked = session_.download(blocked_, count);
+  } else {
+    session_.fill(answers_, RayAnswer{-1.0f, 0xfffffffeu}, count);
+    RayPacketAnswer unwritten;
+    std::fill(std::begin(unwritten.t), std::end(unwritten.t), -1.0f);
+    std::fill(std::begin(unwritten.splat), std::end(unwritten.splat), 0xfffffffeu);
+    session_.fill(packet_answers_, unwritten, packet_answers_.size);
+    trace(kernel, variant, pools);
+    found.hits = kernel == ProfiledKernel::eye && variant.grouping == RayGrouping::packet
+                     ? rays_of(session_.download(packet_answers_, packet_answers_.size))
+                     : session_.download(answers_, count);
+    to_inputs(found.hits, pools.tree->source);
+  }
+  return found;
+}
+
+Differences ProfileBench::launch_and_compare(ProfiledKernel kernel, const TraversalVariant& variant,
+                                             const ProfiledPools& pools) {
+  const Answers found = answers(kernel, variant, pools), &truth = truth_[at(kernel)];
+  switch (kernel) {
+  case ProfiledKernel::any:
+    return compare_blocked(found.blocked, truth.blocked);
+  case ProfiledKernel::render:
+    return compare_answers(found.hits, truth.hits) +
+           compare_films(found.film, truth.film, pools.tree->lighting.emitters.empty());
+  case ProfiledKernel::eye:
+  case ProfiledKernel::bounced:
+    break;
+  }
+  return compare_answers(found.hits, truth.hits);
+}
+
+void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
+  const std::size_t splats = request_.splats.size();
+  const auto points = session_.upload(request_.splats);
+  cl::Kernel scan = session_.kernel("test/brute_force.cl", "", "brute_force_closest");
+  for (const ProfiledKernel kernel : {ProfiledKernel::eye, ProfiledKernel::bounced}) {
+    const Buffer<RayQuery>& all = kernel == ProfiledKernel::eye ? eye_ : bounced_;
+    const std::size_t count = std::min<std::size_t>(std::max<std::size_t>(scan_tests / splats, 256), all.size);
+    // Spread over all rays: the first rows of a window may show nothing.
+    const std::vector<RayQuery> every = session_.download(all, all.size);
+    std::vector<RayQuery> some(count);
+    std::vector<RayAnswer> found(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      some[i] = every[i * all.size / count];
+      found[i] = truth_[at(kernel)].hits[i * all.size / count];
+    }
+    const auto rays = session_.upload(some);
+    const auto answers = session_.allocate<RayAnswer>(count);
+    session_.label_launches("linear scan");
+    session_.launch(scan, LaunchShape::line(count), points, static_cast<cl_uint>(splats), rays, answers,
+                    static_cast<cl_uint>(count));
+    const Differences d = compare_answers(found, session_.download(answers, count));
+    if (d.wrong > 0)
+      throw Error(ErrorKind::device, session_.info().name + ": " + name_of(reference) +
+                                         ", which all others are checked against, differs from a linear scan in " +
+                                         std::to_string(d.wrong) + " of " + std::to_string(count) + " " +
+                                         name_of(kernel) + " rays; do not trust this driver, or mend the kernels");
+    profile.proved_rays += count;
+  }
+}
+
+void ProfileBench::take_reference(const TraversalVariant& reference, const ProfiledPools& pools, Profile& profile) {
+  for (const ProfiledKernel kernel : {ProfiledKernel::eye, ProfiledKernel::bounced, ProfiledKernel::render}) {
+    std::size_t count = first_rays;
+    for (int pass = 0; pass < 3; ++pass) { // the first also builds and warms; few rays tell little of many
+      set_rays(kernel, count);
+      launch(kernel, reference, pools);
+      double seconds = launch(kernel, reference, pools);
+      for (int k = 0; k < 2; ++k) // the least: a busy machine must not make the launches small
+        seconds = std::min(seconds, launch(kernel, reference, pools));
+      seconds = std::max(seconds, 1e-6);
+      const double factor = std::clamp(request_.launch_seconds / seconds, 0.05, 50.0);
+      count = std::clamp(static_cast<std::size_t>(static_cast<double>(count) * factor),
+                         kernel == ProfiledKernel::render ? fewest_picture_rays : fewest_rays, most_rays);
+      count = count / GRID_RAYS * GRID_RAYS;
+    }
+    set_rays(kernel, count);
+  }
+  for (std::size_t k = 0; k < profiled_kernels; ++k)
+    truth_[k] = answers(static_cast<ProfiledKernel>(k), reference, pools);
+  const std::vector<float>& film = truth_[at(ProfiledKernel::render)].film;
+  for (std::size_t pixel = 0; pixel < film.size(); pixel += FILM_CHANNELS)
+    rays_[at(ProfiledKernel::render)] += static_cast<std::uint64_t>(film[pixel + FILM_RAYS]);
+  prove(reference, profile);
+  profile.rays = rays_;
+  profile.eye_window = eye_window_;
+  profile.render_window = render_window_;
+}
+
+std::uint64_t ProfileBench::bytes(ProfiledKernel kernel, const TraversalVariant& variant,
+                                  const ProfiledPools& pools) const {
+  const std::uint64_t pool_bytes = pools.tree->bytes;
+  switch (kernel) {
+  case ProfiledKernel::any:
+    return pool_bytes + rays(kernel) * (sizeof(RayQuery) + sizeof(cl_uint));
+  case ProfiledKernel::render: { // two kernels: both read the pools, hits are written and read
+    const PixelWindow& w = render_window_;
+    const auto pixels = static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0);
+    return 2 * pool_bytes + pixels * (2 * sizeof(EyeHits) + sizeof(float) * FILM_CHANNELS);
+  }
+  case ProfiledKernel::eye:
+    if (variant.grouping == RayGrouping::packet)
+      return pool_bytes + eye_packets_.size * (sizeof(RayPacketQuery) + sizeof(RayPacketAnswer));
+    break;
+  case ProfiledKernel::bounced:
+    break;
+  }
+  return pool_bytes + rays(kernel) * (sizeof(RayQuery) + sizeof(RayAnswer));
+}
+
+} // namespace pointgi

@@ -1,0 +1,188 @@
+#include "host/tune/variant_list.h"
+#include "shared/render_types.h"
+#include <algorithm>
+#include <map>
+
+namespace pointgi {
+
+namespace {
+
+using Variant = TraversalVariant;
+
+bool wide(const Variant& v) {
+  return v.form == TraversalForm::wide;
+}
+bool packets(const Variant& v) {
+  return v.grouping == RayGrouping::packet;
+}
+bool sixteen_lanes(const Variant& v) {
+  return wide(v) && v.lanes == 16;
+}
+bool images(const Variant& v) {
+  return v.storage != PoolStorage::buffer;
+}
+bool hilbert(const Variant& v) {
+  return v.order == PointOrder::hilbert;
+}
+bool pairs(const Variant& v) {
+  return v.group.size() > GRID_RAYS;
+}
+
+} // namespace
+
+const std::vector<Precondition>& preconditions() {
+  static const std::vector<Precondition> all{
+      {"the wide form takes N = 2", wide, [](const Variant& v, const DeviceInfo&) { return v.axis_bits == 1; }},
+      {"the wide form lies in plain buffers", wide, [](const Variant& v, const DeviceInfo&) { return !images(v); }},
+      {"the wide form has no cells to step through: stepping is exact", wide,
+       [](const Variant& v, const DeviceInfo&) { return v.stepping == Stepping::exact; }},
+      {"packets go through the wide form", packets, [](const Variant& v, const DeviceInfo&) { return wide(v); }},
+      {"packets want a work-item with vector registers of its own: a CPU device", packets,
+       [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
+      {"16 lanes want vector registers as wide: a CPU device", sixteen_lanes,
+       [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
+      {"Hilbert order goes with N = 2", hilbert, [](const Variant& v, const DeviceInfo&) { return v.axis_bits == 1; }},
+      {"images want a device with images, large enough for the pools", images,
+       [](const Variant&, const DeviceInfo& d) { return d.images; }},
+      {"a work-group of 64 wants a device that gives 64", pairs,
+       [](const Variant& v, const DeviceInfo& d) { return d.max_work_group >= v.group.size(); }},
+      {"a work-group of 32 wants a device that gives 32", [](const Variant& v) { return !pairs(v); },
+       [](const Variant& v, const DeviceInfo& d) { return d.max_work_group >= v.group.size(); }},
+  };
+  return all;
+}
+
+std::string why_not(const TraversalVariant& variant, const DeviceInfo& device) {
+  for (const Precondition& p : preconditions())
+    if (p.concerns(variant) && !p.holds(variant, device)) return p.sentence;
+  return {};
+}
+
+TraversalVariant plain_variant(TraversalForm form) {
+  TraversalVariant variant;
+  variant.form = form;
+  // Flat around these on the scans; larger leaves keep the pools below 90 bytes a splat.
+  variant.leaf_capacity = form == TraversalForm::wide ? 64 : 32;
+  return variant;
+}
+
+TraversalVariant reference_variant() {
+  return plain_variant(TraversalForm::step);
+}
+
+namespace {
+
+/// Calls `take` with every combination of the form that some device may run.
+template <typename Take>
+void for_every(TraversalForm form, const Take& take) {
+  const DeviceInfo device = ideal_device(true);
+  const bool is_wide = form == TraversalForm::wide;
+  TraversalVariant v = plain_variant(form);
+  for (v.axis_bits = 1; v.axis_bits <= 2; ++v.axis_bits)
+    for (const PoolStorage storage : pool_storages())
+      for (const PointOrder order : point_orders())
+        for (const unsigned lanes : is_wide ? std::vector<unsigned>{8, 16} : std::vector<unsigned>{8})
+          for (const unsigned leaf : is_wide ? std::vector<unsigned>{64, 32, 128} : std::vector<unsigned>{32, 16, 64})
+            for (const RayGrouping grouping : ray_groupings())
+              for (const WorkGroup group : work_groups()) {
+                v.storage = storage, v.order = order, v.lanes = lanes, v.leaf_capacity = leaf;
+                v.grouping = grouping, v.group = group;
+                if (why_not(v, device).empty()) take(v);
+              }
+}
+
+bool plain_but_for_kernel(const TraversalVariant& v) {
+  return v.order == PointOrder::morton && v.leaf_capacity == plain_variant(v.form).leaf_capacity &&
+         v.group == WorkGroup{};
+}
+
+} // namespace
+
+std::vector<TraversalVariant> all_variants() {
+  std::vector<TraversalVariant> exact, fast;
+  for (const TraversalForm form : traversal_forms())
+    for_every(form, [&](TraversalVariant v) {
+      exact.push_back(v);
+      if (!plain_but_for_kernel(v)) return; // what fast math gains does not hang on the tree
+      v.fast_math = true;
+      fast.push_back(v);
+    });
+  exact.insert(exact.end(), fast.begin(), fast.end());
+  return exact;
+}
+
+std::vector<TraversalVariant> tracing_variants() {
+  std::vector<TraversalVariant> result;
+  for (const TraversalVariant& v : all_variants())
+    if (!v.fast_math && (v.group == WorkGroup{8, 4} || v.group == WorkGroup{16, 4})) result.push_back(v);
+  return result;
+}
+
+DeviceInfo ideal_device(bool cpu) {
+  DeviceInfo info;
+  info.is_cpu = cpu;
+  info.is_gpu = !cpu;
+  info.images = true;
+  info.max_work_group = 1024;
+  return info;
+}
+
+std::vector<ProgramUse> all_programs() {
+  std::vector<TraversalVariant> variants = all_variants();
+  for (TraversalVariant v : all_variants())
+    if (v.form == TraversalForm::step && !v.fast_math && plain_but_for_kernel(v)) {
+      v.stepping = Stepping::absolute_delta;
+      variants.push_back(v);
+    }
+  std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true}};
+  // Not for GPUs yet: their vectors of 8 lanes in arrays are more than a stack frame should be.
+  for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
+                           "radiosity/direct/receive_from_all.cl"})
+    uses.push_back({fmm_program(file), true, false});
+  // Nor gathering of photons, whose candidates stand in private memory.
+  for (const unsigned k : {64u, 512u, 1024u})
+    for (const Program& program :
+         {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})
+      uses.push_back({program, true, false});
+  std::map<std::string, std::size_t> known;
+  const auto add = [&](const Program& program, bool cpu, bool gpu) {
+    const auto [at, is_new] = known.emplace(program.file + "\n" + program.options, uses.size());
+    if (is_new) uses.push_back({program, false, false});
+    uses[at->second].cpu |= cpu;
+    uses[at->second].gpu |= gpu;
+  };
+  const SceneFeatures diffuse{true, true, true, true}, without_shadow_rays{false, true, false, true, false};
+  const SceneFeatures everything{true, true, true, true, true, true, true, true};
+  const SceneFeatures traced{true, true, true, false, true, true, true, true}; // by paths
+  const SceneFeatures lit{false, false, false, false, true, true, true, true}; // by photons
+  for (const TraversalVariant& v : variants) {
+    const bool cpu = why_not(v, ideal_device(true)).empty(), gpu = why_not(v, ideal_device(false)).empty();
+    const bool usual_walk = build_options(v) == build_options(plain_variant(v.form)) && !v.fast_math;
+    const bool usual_group = v.group == WorkGroup{};
+    add(trace_program(v), cpu, gpu);
+    add(eye_rays_program(v), cpu, gpu);
+    if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
+    if (usual_group) add(shade_program(v, {}), cpu, gpu);
+    add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
+    add(specular_rays_program(v), cpu, gpu);
+    add(segments_program(v), cpu, gpu);
+    add(pairs_program(v), cpu, gpu);
+    add(path_program(v, traced, true), cpu, gpu);
+    add(trace_photons_program(v, lit, PhotonStart::aimed), cpu, gpu);
+    if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);
+    if (!usual_walk || !usual_group) continue;
+    add(shade_program(v, diffuse), cpu, gpu);
+    add(shade_program(v, without_shadow_rays), cpu, gpu);
+    SceneFeatures caustics = everything;
+    for (const unsigned k : {64u, 512u, 1024u}) {
+      caustics.gather_k = k;
+      add(shade_program(v, caustics), cpu, false);
+    }
+    add(path_program(v, {true, true, true}, true), cpu, gpu);
+    add(trace_photons_program(v, lit, PhotonStart::equal_power), cpu, gpu);
+    add(trace_photons_program(v, lit, PhotonStart::from_surfaces), cpu, gpu);
+  }
+  return uses;
+}
+
+} // namespace pointgi

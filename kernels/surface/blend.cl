@@ -1,0 +1,124 @@
+/* Overlapping discs near the first hit become one smooth surface: colour, normal and depth are means with a weight that
+ * falls to zero at a disc's rim, or seams would show (method.md section 6). */
+#include "lib/pools.cl"
+#include "lib/ray.cl"
+#include "surface/disc.cl"
+
+/* How far behind the first hit a disc still belongs to the same surface, in radii of the disc hit first. Overlapping
+ * neighbours of a curved or noisy surface lie less than a radius apart along the ray. */
+#ifndef BLEND_DEPTH
+#define BLEND_DEPTH 1.0f
+#endif
+#define BLEND_COSINE 0.5f /* discs that face another way belong to another surface: a corner stays sharp */
+
+typedef struct Surface {
+  float3 position, normal, albedo; /* normal on the splats' front side, unit */
+#ifdef HAS_RADIOSITY
+  float3 irradiance; /* from other surfaces */
+#endif
+#ifdef HAS_CAUSTICS
+  float4 caustic; /* caustic_pool's */
+#endif
+  float t;
+  float radius;  /* of the disc hit first */
+  uint splat;    /* the disc hit first */
+  uint material; /* its material */
+  bool front;    /* the ray met the front side */
+#ifdef HAS_PHONG
+  float3 mirrored;  /* where the ray would go on, were the surface a mirror */
+  float exponent;   /* of the lobe about that */
+  float3 highlight; /* see direct_irradiance */
+#endif
+} Surface;
+
+typedef struct Blend {
+  float3 normal_of_first;
+  float3 normal, albedo; /* weighted sums, as are irradiance, weight and t */
+#ifdef HAS_RADIOSITY
+  float3 irradiance;
+#endif
+#ifdef HAS_CAUSTICS
+  float4 caustic;
+#endif
+  float weight, t;
+  float t_first, t_end; /* discs hit in [t_first, t_end) count */
+  float radius;
+  uint splat, material;
+} Blend;
+
+#ifdef HAS_SPECULAR
+/* A splat's own normal changes over its disc (method.md section 6). */
+static inline float3 field_normal(POOL_PARAMS, Ray ray, uint splat, float t, float3 normal) {
+  const float4 f = field_pool[splat];
+  const float3 off = fma((float3)(t), ray.direction, ray.origin - pool_point_texel(POINT_TEXELS * splat).xyz);
+  float3 a, b;
+  tangents(normal, &a, &b);
+  const float u = dot3(off, a), v = dot3(off, b);
+  return normalize3(normal + (u * f.x + v * f.z) * a + (u * f.y + v * f.w) * b);
+}
+#endif
+
+static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t, float q, float3 normal, float3 albedo) {
+  if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
+    return;
+  /* A tiny floor keeps a lone disc visible out to its very rim. */
+  const float rim = fmax(1.0f - q, 1e-3f);
+  const float depth = 1.0f - (t - b->t_first) / (b->t_end - b->t_first);
+  const float w = rim * rim * depth;
+  b->weight += w;
+#ifdef HAS_SPECULAR
+  normal = field_normal(POOL_ARGS, ray, splat, t, normal);
+#endif
+  b->normal += w * normal;
+  b->albedo += w * albedo;
+#ifdef HAS_RADIOSITY
+  b->irradiance += w * irradiance_pool[splat].xyz;
+#endif
+#ifdef HAS_CAUSTICS
+  b->caustic += w * caustic_pool[splat];
+#endif
+  b->t += w * t;
+}
+
+/* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
+static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
+  /* No second judgement of whether the ray meets the disc: one that went on from a surface before it (hit_behind) did so
+   * from another origin, and at the very rim rounding may tell the two apart. */
+  float distance2;
+  const float t = ray_plane(ray.origin, ray.direction, centre, normal.xyz, &distance2);
+  const float q = fmin(distance2 / (centre.w * centre.w), 1.0f);
+  b->normal_of_first = normal.xyz;
+  b->normal = b->albedo = (float3)(0.0f);
+#ifdef HAS_RADIOSITY
+  b->irradiance = (float3)(0.0f);
+#endif
+#ifdef HAS_CAUSTICS
+  b->caustic = (float4)(0.0f);
+#endif
+  b->weight = b->t = 0.0f;
+  b->t_first = t;
+  /* At least a few float steps, so that the window is never empty. */
+  b->t_end = t + fmax(BLEND_DEPTH * centre.w, 1e-6f * t);
+  b->radius = centre.w;
+  b->splat = splat;
+  b->material = (uint)normal.w;
+  blend_add(POOL_ARGS, b, ray, splat, t, q, normal.xyz, albedo);
+}
+
+static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
+  const float scale = 1.0f / b->weight;
+  s->t = b->t * scale;
+  s->position = fma((float3)(s->t), ray.direction, ray.origin);
+  s->normal = normalize3(b->normal);
+  s->albedo = b->albedo * scale;
+#ifdef HAS_RADIOSITY
+  s->irradiance = b->irradiance * scale;
+#endif
+#ifdef HAS_CAUSTICS
+  s->caustic = b->caustic * scale;
+#endif
+  s->radius = b->radius;
+  s->splat = b->splat;
+  s->material = b->material;
+  s->front = dot3(b->normal_of_first, ray.direction) < 0.0f;
+}

@@ -1,0 +1,39 @@
+/* The truth beside every traversal: each ray against each splat of the pool, without the octree. For tests.
+ * NDRange: 1-D, one work-item a ray, padded. answers[i] = nearest hit of rays[i], ties to the lowest index; for
+ * brute_force_closest_from of those that do not belong to the surface which it leaves, surfaces[i] = (normal, radius). */
+#include "lib/pools.cl"
+#include "lib/ray.cl"
+#include "surface/disc.cl"
+
+static inline RayAnswer nearest_of_all(const __global float4* points, uint point_count, const __global RayQuery* ray,
+                                       bool leaves, ShadowEnds ends) {
+  const float3 origin = load3(ray->origin), direction = load3(ray->direction);
+  RayAnswer best = {ray->t_max, NO_SPLAT};
+  for (uint k = 0u; k < point_count; ++k) {
+    const float4 centre = points[POINT_TEXELS * k];
+    const float4 normal = points[POINT_TEXELS * k + 1u];
+    float q;
+    const float t = ray_disc(origin, direction, centre, normal.xyz, &q);
+    if (t > ray->t_min && t < best.t && !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
+      best.t = t;
+      best.splat = k;
+    }
+  }
+  return best;
+}
+
+__kernel void brute_force_closest(const __global float4* points, uint point_count, const __global RayQuery* rays,
+                                  __global RayAnswer* answers, uint count) {
+  const uint i = get_global_id(0);
+  if (i < count)
+    answers[i] = nearest_of_all(points, point_count, rays + i, false, free_ends());
+}
+
+__kernel void brute_force_closest_from(const __global float4* points, uint point_count, const __global RayQuery* rays,
+                                       const __global float4* surfaces, __global RayAnswer* answers, uint count) {
+  const uint i = get_global_id(0);
+  if (i >= count)
+    return;
+  const ShadowEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
+  answers[i] = nearest_of_all(points, point_count, rays + i, true, ends);
+}

@@ -1,0 +1,123 @@
+/* The traversal interface, on the form of the octree that was chosen: trace_closest, trace_any and trace_blended;
+ * trace_closest_from, which alone pays for the end it looks at.
+ *   BOUNCED_RAYS  defined by programs whose viewers' rays also start on surfaces; all are where HAS_SPECULAR
+ *   FORM_STEP  cells, Begin-End pool, extra splats: kernels/traverse/step_traversal.cl
+ *   FORM_WIDE  tight child boxes, blocks of splats: kernels/traverse/wide_traversal.cl */
+#if defined(HAS_SPECULAR) && !defined(BOUNCED_RAYS)
+#define BOUNCED_RAYS
+#endif
+#include "surface/blend.cl"
+#include "lib/lanes8.cl"
+#include "lib/pools.cl"
+#if TRAVERSAL_FORM == FORM_WIDE
+#include "traverse/wide_traversal.cl"
+#else
+#include "traverse/step_traversal.cl"
+#endif
+
+/* Where a surface bends away from the viewer, rims of discs from behind its horizon stick out, and a ray meets their
+ * backs although the surface has none there. The middle of such a disc is hidden behind a front side close before it,
+ * its own surface's; that of a disc on the inside of an open surface is not. */
+/* How close, in units of the two discs' radii: across what is thin, an ear or a hoof, but not across a vessel. */
+#define RIM_REACH 8.0f
+#define MAX_RIMS 16 /* rims, one behind another, that a ray passes; the last one then counts */
+
+/* trace_closest, or trace_closest_from in programs whose rays also leave surfaces: one walk in the code, not two. */
+static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+#ifdef BOUNCED_RAYS
+  return trace_closest_from(POOL_ARGS, ray, ends);
+#else
+  return trace_closest(POOL_ARGS, ray);
+#endif
+}
+
+/* Whether the back of the disc `centre` is such a rim. */
+static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 centre) {
+  ray.direction = centre.xyz - ray.origin;
+  const float distance = sqrt(dot3(ray.direction, ray.direction));
+  ray.direction /= distance;
+  ray.t_max = distance - 0.05f * centre.w; /* what passes through the middle itself hides nothing */
+  const Hit hit = trace_closest_of(POOL_ARGS, ray, ends);
+  return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f &&
+         distance - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
+}
+
+#ifdef HAS_SPECULAR
+/* The next hit within `reach` behind `hit`, as if the ray had come through the surface there: what lies in the same plane,
+ * before or behind it by rounding, is met. */
+static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float reach) {
+  const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
+  ends.origin_normal = normal.xyz;
+  ends.origin_radius = pool_point_texel(POINT_TEXELS * hit.splat).w;
+  ends.origin_material = (uint)normal.w + 1u;
+  ends.origin_back = dot3(normal.xyz, ray.direction) < 0.0f ? 1u : 0u;
+  ends.origin_through = 1u;
+  ray.origin = fma((float3)(hit.t), ray.direction, ray.origin);
+  ray.t_min = -SEGMENT_MARGIN;
+  ray.t_max = reach;
+  Hit behind = trace_closest_from(POOL_ARGS, ray, ends);
+  behind.t += hit.t;
+  return behind;
+}
+
+static inline bool is_of_medium(POOL_PARAMS, ShadowEnds ends, uint splat) {
+  return (uint)pool_point_texel(POINT_TEXELS * splat + 1u).w + 1u == ends.medium;
+}
+
+/* Where glass stands on something, the two planes are one: rounding must not say which of them a ray in the glass meets. It
+ * meets the glass. */
+static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
+  if (ends.medium == 0u || hit.splat == NO_SPLAT || is_of_medium(POOL_ARGS, ends, hit.splat))
+    return hit;
+  const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN);
+  return behind.splat != NO_SPLAT && is_of_medium(POOL_ARGS, ends, behind.splat) ? behind : hit;
+}
+#endif
+
+/* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. Adds
+ * the rays traced to *rays. */
+static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float* rays) {
+  Ray rest = ray;
+  for (int k = 0; k < MAX_RIMS; ++k) {
+    if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
+      break;
+#ifdef HAS_SPECULAR
+    /* From inside glass its backs are what there is to see. */
+    if (is_of_medium(POOL_ARGS, ends, hit.splat))
+      break;
+#endif
+    *rays += 1.0f;
+    if (!sticks_out(POOL_ARGS, ray, ends, pool_point_texel(POINT_TEXELS * hit.splat)))
+      break;
+    *rays += 1.0f;
+#ifdef HAS_SPECULAR
+    hit = hit_behind(POOL_ARGS, ray, ends, hit, INFINITY);
+#else
+    rest.t_min = hit.t;
+    hit = trace_closest_of(POOL_ARGS, rest, ends);
+#endif
+  }
+  return hit;
+}
+
+/* The surface that a viewer sees, `hit` being the ray's nearest hit of all: overlapping splats near the first that counts
+ * are blended (kernels/surface/blend.cl). `ends`: of the surface that the ray leaves, or free. Adds the rays traced to *rays. */
+static inline bool blended_surface(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, Surface* surface, float* rays) {
+#ifdef HAS_SPECULAR
+  hit = glass_first(POOL_ARGS, ray, ends, hit);
+#endif
+  const Hit first = visible_hit(POOL_ARGS, ray, ends, hit, rays);
+  if (first.splat == NO_SPLAT)
+    return false;
+  Blend blend;
+  blend_begin(POOL_ARGS, &blend, ray, first.splat, pool_point_texel(POINT_TEXELS * first.splat),
+              pool_point_texel(POINT_TEXELS * first.splat + 1u), pool_point_texel(POINT_TEXELS * first.splat + 2u).xyz);
+  blend_others(POOL_ARGS, ray, &blend);
+  blend_end(&blend, ray, surface);
+  return true;
+}
+
+static inline bool trace_blended(POOL_PARAMS, Ray ray, Surface* surface, float* rays) {
+  *rays += 1.0f;
+  return blended_surface(POOL_ARGS, ray, free_ends(), trace_closest(POOL_ARGS, ray), surface, rays);
+}
