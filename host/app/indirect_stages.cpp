@@ -11,16 +11,23 @@ namespace pointgi {
 
 namespace {
 
-/// Estimates of the direct light of each point. Lights that are points or far away need one, since nothing of them is
-/// chosen at random while they are few; what other estimates scatter, the many senders of a receiver average out.
-constexpr unsigned light_samples = 16, sure_lights = 4;
+/// Estimates of the direct light of a point that is seen only by what it sends on: the many senders of a receiver
+/// average out what the estimates of each scatter.
+constexpr int indirect_light_samples = 16;
+/// Lights that are points or far away need one, since nothing of them is chosen at random while they are few.
+constexpr std::size_t sure_lights = 4;
 /// Of light that enters besides, however little.
 constexpr double coarsest_tolerance = 0.1;
 
-unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
+unsigned samples_for(const IndirectRequest& request, bool with_emitters) {
+  const DeviceLighting& lighting = request.lighting;
   const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
                     lighting.delta.size() <= sure_lights;
-  return sure ? 1 : light_samples;
+  if (sure) return 1;
+  const Scene& scene = request.scene;
+  // Light that the picture shows at the points has the samples of a pixel.
+  const int unless_told = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
+  return static_cast<unsigned>(scene.radiosity.light_samples.value_or(unless_told));
 }
 
 /// Progress of a stage, and Ctrl-C, both at every launch of the device.
@@ -155,7 +162,7 @@ std::vector<float> direct_light(Session& session, const DevicePools& pools, cons
                                 bool with_emitters) {
   const std::size_t points = request.points.size;
   return session.download(direct_irradiance_of_points(session, pools, request.variant, request.lighting,
-                                                      request.frame.side, points, samples_for(request.lighting, with_emitters),
+                                                      request.frame.side, points, samples_for(request, with_emitters),
                                                       with_emitters, [] { return false; }),
                           3 * points);
 }

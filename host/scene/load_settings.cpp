@@ -77,7 +77,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (!table) return;
   std::vector<std::string> keys = radiosity_method_keys();
   keys.insert(keys.begin(), "method");
-  keys.emplace_back("direct_light");
+  keys.insert(keys.end(), {"direct_light", "light_samples"});
   table->allow_only(keys);
   radiosity.place = table->place();
   if (const auto method = table->choice("method", radiosity_method_words())) radiosity.method = *method;
@@ -90,6 +90,8 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
+  if (const auto samples = table->integer("light_samples", limits::light_samples))
+    radiosity.light_samples = static_cast<int>(*samples);
 }
 
 void load_caustics(const TableReader& root, CausticSettings& caustics) {
