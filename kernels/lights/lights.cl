@@ -15,19 +15,6 @@ typedef struct Lights {
   const __global Emitter* emitters;
 } Lights;
 
-/* Index of the first entry whose cumulative share exceeds u, for entries `stride` floats apart. */
-static inline uint pick(const __global float* cumulative, uint stride, uint count, float u) {
-  uint low = 0u, high = count - 1u;
-  while (low < high) {
-    const uint middle = (low + high) / 2u;
-    if (cumulative[middle * stride] > u)
-      high = middle;
-    else
-      low = middle + 1u;
-  }
-  return low;
-}
-
 /* A place or direction from which light may come, and what it adds to the irradiance when nothing is in between. */
 typedef struct LightSample {
   float3 towards; /* unit */
