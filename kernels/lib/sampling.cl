@@ -111,3 +111,27 @@ static inline float3 cosine_direction(float3 n, float u, float v) {
   const float r = sqrt(u), phi = 6.2831853f * v;
   return normalize3(r * cos(phi) * a + r * sin(phi) * b + sqrt(fmax(0.0f, 1.0f - u)) * n);
 }
+
+/* A direction of a cone about `axis`, unit, of sine^2 s2 of its half angle, or any direction where s2 >= 1; density 1 over
+ * *solid_angle. */
+static inline float3 cone_direction(float3 axis, float s2, float2 u, float* solid_angle) {
+  const float height = s2 >= 1.0f ? 2.0f : s2 / (1.0f + sqrt(1.0f - s2)); /* 1 - cosine of the half angle */
+  *solid_angle = 6.2831853f * height;
+  const float down = u.x * height, r = sqrt(fmax(0.0f, down * (2.0f - down))), phi = 6.2831853f * u.y;
+  float3 a, b;
+  tangents(axis, &a, &b);
+  return normalize3((1.0f - down) * axis + r * cos(phi) * a + r * sin(phi) * b);
+}
+
+/* Index of the first entry whose cumulative share exceeds u, for entries `stride` floats apart. */
+static inline uint pick(const __global float* cumulative, uint stride, uint count, float u) {
+  uint low = 0u, high = count - 1u;
+  while (low < high) {
+    const uint middle = (low + high) / 2u;
+    if (cumulative[middle * stride] > u)
+      high = middle;
+    else
+      low = middle + 1u;
+  }
+  return low;
+}
