@@ -1,13 +1,13 @@
 #include "host/app/commands.h"
-#include "host/app/indirect_stages.h"
 #include "host/app/interrupt.h"
-#include "host/app/lit_cloud.h"
 #include "host/app/output_files.h"
-#include "host/app/prepared_scene.h"
-#include "host/app/progress.h"
 #include "host/app/stats.h"
-#include "host/app/view_warnings.h"
 #include "host/cloud/input_file.h"
+#include "host/stages/indirect_stages.h"
+#include "host/stages/lit_cloud.h"
+#include "host/stages/prepared_scene.h"
+#include "host/stages/progress.h"
+#include "host/stages/view_warnings.h"
 #include <cstdio>
 #include <spdlog/spdlog.h>
 

@@ -1,7 +1,7 @@
 #include "host/app/commands.h"
-#include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
 #include "host/scene/objects.h"
+#include "host/stages/prepare.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cmath>

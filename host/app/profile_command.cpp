@@ -1,12 +1,12 @@
 #include "host/app/commands.h"
 #include "host/app/interrupt.h"
-#include "host/app/prepare.h"
 #include "host/app/profile_report.h"
-#include "host/app/progress.h"
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
+#include "host/stages/prepare.h"
+#include "host/stages/progress.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>

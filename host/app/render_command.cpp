@@ -1,12 +1,12 @@
 #include "host/app/commands.h"
 #include "host/app/interrupt.h"
-#include "host/app/light_stages.h"
 #include "host/app/output_files.h"
-#include "host/app/prepared_scene.h"
-#include "host/app/progress.h"
 #include "host/app/stats.h"
-#include "host/app/view_warnings.h"
 #include "host/cache/binary_cache.h"
+#include "host/stages/light_stages.h"
+#include "host/stages/prepared_scene.h"
+#include "host/stages/progress.h"
+#include "host/stages/view_warnings.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

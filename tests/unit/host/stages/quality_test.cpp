@@ -1,4 +1,4 @@
-#include "host/app/prepared_scene.h"
+#include "host/stages/prepared_scene.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;

@@ -1,4 +1,4 @@
-#include "host/app/view_warnings.h"
+#include "host/stages/view_warnings.h"
 #include "host/scene/objects.h"
 #include <algorithm>
 #include <spdlog/fmt/fmt.h>

@@ -1,7 +1,7 @@
-#include "host/app/photon_stage.h"
-#include "host/app/progress.h"
+#include "host/stages/photon_stage.h"
 #include "host/error.h"
 #include "host/photon/diffuse_photons.h"
+#include "host/stages/progress.h"
 #include <algorithm>
 #include <cmath>
 #include <spdlog/spdlog.h>

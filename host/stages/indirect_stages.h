@@ -1,8 +1,8 @@
 #pragma once
 /// The stages of indirect light, between the octree and the picture: which the scene needs, and what they found.
-#include "host/app/stages.h"
 #include "host/radiosity/radiosity.h"
 #include "host/scene/frame.h"
+#include "host/stages/stages.h"
 #include <functional>
 #include <optional>
 

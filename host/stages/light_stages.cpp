@@ -1,4 +1,4 @@
-#include "host/app/light_stages.h"
+#include "host/stages/light_stages.h"
 #include "host/photon/diffuse_photons.h"
 #include <spdlog/spdlog.h>
 

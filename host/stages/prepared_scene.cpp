@@ -1,4 +1,4 @@
-#include "host/app/prepared_scene.h"
+#include "host/stages/prepared_scene.h"
 #include "host/passes/build_pools.h"
 #include <algorithm>
 #include <cmath>
@@ -45,13 +45,6 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   stages.finish(summary_of(ready.pools).nodes, "nodes");
   ready.lighting = device_lighting(scene, ready.frame, points_of(ready.pools));
   return ready;
-}
-
-std::vector<std::string> overrides_of(const LightOptions& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.seed) overrides.push_back("render.seed=" + std::to_string(*options.seed));
-  if (options.exposure) overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
-  return overrides;
 }
 
 void apply_quality(const std::string& quality, Scene& scene, bool samples_given) {

@@ -1,8 +1,8 @@
-#include "host/app/indirect_stages.h"
-#include "host/app/progress.h"
+#include "host/stages/indirect_stages.h"
 #include "host/cloud/normal_field.h"
 #include "host/error.h"
 #include "host/radiosity/point_irradiance.h"
+#include "host/stages/progress.h"
 #include <algorithm>
 #include <spdlog/spdlog.h>
 

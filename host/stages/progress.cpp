@@ -1,4 +1,4 @@
-#include "host/app/progress.h"
+#include "host/stages/progress.h"
 #include <algorithm>
 #include <cstdio>
 #include <unistd.h>

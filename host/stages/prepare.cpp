@@ -1,4 +1,4 @@
-#include "host/app/prepare.h"
+#include "host/stages/prepare.h"
 #include "host/cloud/input_file.h"
 #include "host/scene/merge_coincident.h"
 #include "host/view/default_view.h"

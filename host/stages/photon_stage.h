@@ -1,7 +1,7 @@
 #pragma once
 /// The stage `photon`: which scenes need it, and what it found.
-#include "host/app/indirect_stages.h"
 #include "host/photon/trace_photons.h"
+#include "host/stages/indirect_stages.h"
 
 namespace pointgi {
 

@@ -1,4 +1,4 @@
-#include "host/app/stages.h"
+#include "host/stages/stages.h"
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
