@@ -1,12 +1,11 @@
+#include "host/app/command_run.h"
 #include "host/app/commands.h"
-#include "host/app/interrupt.h"
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
 #include "host/cloud/input_file.h"
 #include "host/stages/indirect_stages.h"
 #include "host/stages/lit_cloud.h"
 #include "host/stages/prepared_scene.h"
-#include "host/stages/progress.h"
 #include "host/stages/view_warnings.h"
 #include <cstdio>
 #include <spdlog/spdlog.h>
@@ -29,6 +28,7 @@ Scene checked_scene(const BakeOptions& options) {
 } // namespace
 
 ExitCode run_bake(const BakeOptions& options) {
+  CommandRun run(options.quiet);
   StageLog stages;
   stages.start("scene");
   Scene scene = checked_scene(options);
@@ -36,9 +36,7 @@ ExitCode run_bake(const BakeOptions& options) {
   Session session(choose_device(options.device));
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
   const PreparedScene ready = prepare_scene(session, scene, !is_scene_file(options.input), stages);
-  catch_interrupts();
-  const IndirectRequest request{ready.choice.variant,   scene, ready.frame,   ready.lighting,
-                                points_of(ready.pools), false, options.quiet, interrupted};
+  const IndirectRequest request{ready.choice.variant, scene, ready.frame, ready.lighting, points_of(ready.pools)};
   if (scene.caustics.place && ready.lighting.has_specular())
     spdlog::warn("{}: [caustics] has no effect: a lit cloud holds no caustics", scene.caustics.place->text());
   IndirectLight light = run_indirect_stages(session, ready.on_device, request, stages);
@@ -64,6 +62,7 @@ ExitCode run_bake(const BakeOptions& options) {
     stats.seconds = stages.seconds();
     write_stats(options.stats_file, stats, stages);
   }
+  run.end_progress();
   std::printf("%s\n", options.output.c_str());
   spdlog::info("{} lit points, {}", lit.cloud.size(), duration_text(stages.seconds()));
   return ExitCode::done;

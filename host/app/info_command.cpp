@@ -1,3 +1,4 @@
+#include "host/app/command_run.h"
 #include "host/app/commands.h"
 #include "host/passes/build_pools.h"
 #include "host/scene/objects.h"
@@ -73,6 +74,7 @@ float percentile(std::vector<float> values, double share) {
 } // namespace
 
 ExitCode run_info(const std::string& file) {
+  const CommandRun run(false);
   const bool is_scene = is_scene_file(file);
   const Scene scene = load_any(file, {});
   const WorldSplats splats = load_splats(scene);

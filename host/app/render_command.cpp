@@ -1,11 +1,10 @@
+#include "host/app/command_run.h"
 #include "host/app/commands.h"
-#include "host/app/interrupt.h"
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
 #include "host/cache/binary_cache.h"
 #include "host/stages/light_stages.h"
 #include "host/stages/prepared_scene.h"
-#include "host/stages/progress.h"
 #include "host/stages/view_warnings.h"
 #include <algorithm>
 #include <cstdio>
@@ -121,19 +120,18 @@ double kernel_seconds(const Session& session) {
 /// Renders and writes the picture; false when it was interrupted before a row was finished, which leaves an older
 /// picture alone.
 bool render_picture(Session& session, const DevicePools& pools, const RenderRequest& request, PictureWriter& writer,
-                    bool quiet, RenderTotals& totals, StageLog& stages) {
+                    const RunControl& control, RenderTotals& totals, StageLog& stages) {
   stages.start("render");
-  {
-    Progress progress("render", quiet);
-    totals = render(
-        session, pools, request, [&](const Band& band) { writer.write(band); },
-        [&](double share) { progress.update(share); }, interrupted);
-  }
+  totals = render(
+      session, pools, request, [&](const Band& band) { writer.write(band); },
+      [](double share) { report_progress(share); }, stop_asked);
   stages.finish(totals.rays, "rays", totals.device_seconds);
   for (const auto& [name, time] : session.kernel_times())
     spdlog::debug("kernel {}: {} launches, {:.3f} s", name, time.launches, time.seconds);
   if (totals.interrupted && totals.rows_done == 0) return false;
   const double render_seconds = stages.records().back().seconds;
+  const RunControl to_the_end{{}, control.progress, control.log}; // what is there is kept
+  const RunScope scope(to_the_end);
   stages.start("image");
   writer.finish(render_seconds);
   const PixelWindow& w = request.window;
@@ -144,6 +142,7 @@ bool render_picture(Session& session, const DevicePools& pools, const RenderRequ
 } // namespace
 
 ExitCode run_render(const RenderOptions& options) {
+  CommandRun run(options.quiet);
   StageLog stages;
   Stats stats;
   stages.start("scene");
@@ -163,9 +162,7 @@ ExitCode run_render(const RenderOptions& options) {
   stats.octree = summary_of(pools);
   const std::optional<LightPaths> paths = paths_of(options, scene);
   bool told_of_black = paths && warn_of_paths(options.paths, scene, ready);
-  catch_interrupts();
-  const IndirectRequest wanted{variant,           scene,         ready.frame, lighting, points_of(pools),
-                               paths.has_value(), options.quiet, interrupted};
+  const IndirectRequest wanted{variant, scene, ready.frame, lighting, points_of(pools), paths.has_value()};
   const SceneLight light = run_light_stages(session, ready.on_device, wanted, stages);
   told_of_black = told_of_black || warn_of_unlit(scene, ready, light.indirect.direct, light.indirect.from_surfaces);
   RenderRequest request{window, lighting, ready.frame, ready.ids, variant, paths};
@@ -181,7 +178,7 @@ ExitCode run_render(const RenderOptions& options) {
   PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
                        film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()),
                        attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
-  const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
+  const bool written = render_picture(session, ready.on_device, request, writer, run.control(), stats.render, stages);
   if (!written)
     throw Error(ErrorKind::interrupted, "interrupted before the first rows were finished; nothing was written");
   warn_of_view(stats.render, scene, ready, told_of_black);
@@ -198,6 +195,7 @@ ExitCode run_render(const RenderOptions& options) {
     write_stats(options.stats_file, stats, stages);
   }
   if (!options.trace_file.empty()) write_text(options.trace_file, stages.chrome_trace(session.launches()));
+  run.end_progress();
   std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());
   if (stats.render.interrupted) {
     spdlog::warn("interrupted: the picture holds its first {} of {} rows", stats.render.rows_done,

@@ -103,6 +103,7 @@ PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
   try {
     complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);
   } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw; // it is no fault of the cloud
     throw Error(error.kind(), settings.file + ": " + error.what());
   }
   cloud.triangle = {}; // they have given their normals; nothing later reads them

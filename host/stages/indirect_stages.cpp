@@ -2,9 +2,8 @@
 #include "host/cloud/normal_field.h"
 #include "host/error.h"
 #include "host/radiosity/point_irradiance.h"
-#include "host/stages/progress.h"
+#include "host/run.h"
 #include <algorithm>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -22,14 +21,13 @@ unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
   return sure ? 1 : light_samples;
 }
 
-/// Progress of a stage, and Ctrl-C, both at every launch of the device.
+/// Progress of a stage, and an end on request, both at every launch of the device.
 class StageWatch {
 public:
-  StageWatch(Session& session, const std::string& stage, const IndirectRequest& request)
-      : session_(session), progress_(stage, request.quiet) {
-    session_.before_launches([this, stage, stop = request.stop] {
-      if (stop()) throw Error(ErrorKind::interrupted, "interrupted in the stage " + stage + "; nothing was written");
-      progress_.tell(done_);
+  explicit StageWatch(Session& session) : session_(session) {
+    session_.before_launches([this] {
+      stop_if_asked();
+      report_progress(done_);
     });
   }
   ~StageWatch() { session_.before_launches({}); }
@@ -42,7 +40,6 @@ public:
 
 private:
   Session& session_;
-  Progress progress_;
   std::string done_ = "at work";
 };
 
@@ -143,9 +140,9 @@ namespace {
 RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
                       StageLog& stages) {
   stages.start("vmap");
-  StageWatch watch(session, "vmap", request);
+  StageWatch watch(session);
   RadiosityMap map = map_visibility(session, exchange, request.scene.radiosity, watch.report());
-  if (map.kept) spdlog::info("V-map: kept from an earlier run");
+  if (map.kept) log_info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
   return map;
 }
@@ -173,7 +170,7 @@ RadiosityField solve(Session& session, const ExchangeScene& exchange, const Indi
 RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
                        IndirectLight& light, StageLog& stages) {
   stages.start("fmm");
-  StageWatch watch(session, "fmm", request);
+  StageWatch watch(session);
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
   light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
@@ -187,17 +184,16 @@ RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const In
 }
 
 void report_solution(const IndirectLight& light, const Solution& solution) {
-  spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}",
-               light.map ? std::to_string(light.map->vmap.links.size()) + " links" : "a ray a pair", solution.applies,
-               solution.residual);
-  if (const std::string complaint = complaint_of(solution); !complaint.empty())
-    spdlog::warn("radiosity: {}", complaint);
+  log_info("radiosity: {}, {} applies of the operator, residual {:.2g}",
+           light.map ? std::to_string(light.map->vmap.links.size()) + " links" : "a ray a pair", solution.applies,
+           solution.residual);
+  if (const std::string complaint = complaint_of(solution); !complaint.empty()) log_warning("radiosity: {}", complaint);
 }
 
 } // namespace
 
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request) {
-  const StageWatch watch(session, "direct light", request);
+  const StageWatch watch(session);
   if (!request.lighting.has_light()) return std::vector<float>(3 * request.points.size);
   return direct_light(session, pools, request, true);
 }
@@ -208,7 +204,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   const RadiositySettings& settings = request.scene.radiosity;
   if (const std::string reason = reason_against_radiosity(request); !reason.empty()) {
     if (settings.place && settings.method != "none")
-      spdlog::warn("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
+      log_warning("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
     stages.skip("vmap", reason);
     stages.skip("fmm", reason);
     return light;
@@ -233,7 +229,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
 std::vector<float> add_exchange(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                 View<float> entering, double share, IndirectLight& light, StageLog& stages) {
   stages.start("fmm");
-  StageWatch watch(session, "fmm", request);
+  StageWatch watch(session);
   const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
   RadiositySettings settings = request.scene.radiosity;
   settings.tolerance = std::min(settings.tolerance / share, coarsest_tolerance);

@@ -26,16 +26,14 @@ struct IndirectRequest {
   const Scene& scene;
   const Frame& frame;
   const DeviceLighting& lighting;
-  View<Splat> points;         ///< of the pool
-  bool by_paths = false;      ///< a path tracer makes the picture
-  bool quiet = false;         ///< no progress
-  std::function<bool()> stop; ///< asked before every launch
-  View<float> caustic{};      ///< [points x 3] as IndirectLight: irradiance that photons bring and that surfaces pass
-                              ///< on; empty: none
+  View<Splat> points;    ///< of the pool
+  bool by_paths = false; ///< a path tracer makes the picture
+  View<float> caustic{}; ///< [points x 3] as IndirectLight: irradiance that photons bring and that surfaces pass
+                         ///< on; empty: none
 };
 
 /// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws
-/// Error(interrupted) when `stop` says so.
+/// Error(interrupted) when the run (host/run.h) is to stop.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 

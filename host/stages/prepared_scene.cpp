@@ -1,8 +1,8 @@
 #include "host/stages/prepared_scene.h"
 #include "host/passes/build_pools.h"
+#include "host/run.h"
 #include <algorithm>
 #include <cmath>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -11,7 +11,7 @@ namespace {
 /// Device memory as the variant wants it, plain buffers where the device's images are too small.
 DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
   if (!images_fit(session.info(), pools, variant.storage)) {
-    spdlog::warn("the device's images are missing or too small for the octree: plain buffers are used instead");
+    log_warning("the device's images are missing or too small for the octree: plain buffers are used instead");
     variant.storage = PoolStorage::buffer;
   }
   return upload_pools(session, pools, variant.storage);
@@ -20,9 +20,9 @@ DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant&
 /// The scene's wishes first, then what a profile of this device found, then the defaults of its class.
 VariantChoice choose_for(const Scene& scene, const DeviceInfo& device) {
   const StoredWinner stored = stored_winner(device);
-  if (!stored.warning.empty()) spdlog::warn("{}", stored.warning);
+  if (!stored.warning.empty()) log_warning("{}", stored.warning);
   const VariantChoice choice = choose_variant(scene.traversal, scene.octree, device, stored.file);
-  spdlog::info("variant: {} ({})", name_of(choice.variant), choice.source);
+  log_info("variant: {} ({})", name_of(choice.variant), choice.source);
   return choice;
 }
 

@@ -46,8 +46,8 @@ public:
     StageLog stages;
     // What has no effect on paths is not worth a warning here.
     spdlog::set_level(by_paths ? spdlog::level::err : spdlog::level::warn);
-    const IndirectRequest request{ready_.choice.variant,   scene_,   ready_.frame, ready_.lighting,
-                                  points_of(ready_.pools), by_paths, true,         [] { return false; }};
+    const IndirectRequest request{ready_.choice.variant,   scene_,  ready_.frame, ready_.lighting,
+                                  points_of(ready_.pools), by_paths};
     Solved solved;
     solved.light = run_light_stages(session_, ready_.on_device, request, stages);
     if (!solved.light.indirect.from_surfaces.empty())
