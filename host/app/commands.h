@@ -21,9 +21,6 @@ struct LightOptions {
   bool quiet = false;
 };
 
-/// The flags that every command that computes light has, as overrides of the scene file: one place checks both.
-std::vector<std::string> overrides_of(const LightOptions& options);
-
 struct RenderOptions : LightOptions {
   std::string size; ///< "WxH"
   std::optional<int> spp;

@@ -96,10 +96,12 @@ void refuse_scanner_format(const std::string& file) {
 } // namespace
 
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  refuse_scanner_format(settings.file);
-  PointCloud cloud = has_extension(settings.file, ".ply")
+  if (!settings.points) refuse_scanner_format(settings.file);
+  PointCloud cloud = settings.points ? *settings.points
+                     : has_extension(settings.file, ".ply")
                          ? read_ply(settings.file, report)
                          : sample_mesh(settings.file, settings.spacing / settings.scale, report);
+  if (settings.points) report.format = "arrays in memory";
   try {
     complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);
   } catch (const Error& error) {
