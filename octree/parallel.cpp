@@ -9,7 +9,19 @@
 #include <thread>
 #include <vector>
 
-namespace pointgi::detail {
+namespace pointgi {
+
+namespace {
+
+thread_local void (*ask_before_range)() = nullptr;
+
+} // namespace
+
+void before_ranges(void (*ask)()) {
+  ask_before_range = ask;
+}
+
+namespace detail {
 
 namespace {
 
@@ -25,16 +37,24 @@ struct Loop {
   unsigned working = 0;
   std::exception_ptr failure;
 
-  /// Takes ranges until there are none left.
-  std::exception_ptr work() {
+  /// Takes ranges until there are none left, or until `ask` throws.
+  std::exception_ptr work(void (*ask)()) {
     std::exception_ptr thrown;
     inside_loop = true;
-    for (std::size_t range; (range = next++) < ranges;)
+    for (std::size_t range; (range = next++) < ranges;) {
+      try {
+        if (ask != nullptr) ask();
+      } catch (...) {
+        next = ranges;
+        thrown = std::current_exception();
+        break;
+      }
       try {
         call(body, range);
       } catch (...) {
         thrown = thrown ? thrown : std::current_exception();
       }
+    }
     inside_loop = false;
     return thrown;
   }
@@ -65,7 +85,7 @@ public:
     loop_ = &loop;
     lock.unlock();
     wake_.notify_all();
-    std::exception_ptr thrown = loop.work();
+    std::exception_ptr thrown = loop.work(ask_before_range);
     lock.lock();
     loop_ = nullptr; // who comes now comes too late
     left_.wait(lock, [&] { return loop.working == 0; });
@@ -84,7 +104,7 @@ private:
       --loop.seats;
       ++loop.working;
       lock.unlock();
-      const std::exception_ptr thrown = loop.work();
+      const std::exception_ptr thrown = loop.work(nullptr);
       lock.lock();
       if (!loop.failure) loop.failure = thrown;
       if (--loop.working == 0) left_.notify_one();
@@ -106,8 +126,10 @@ void run_ranges(std::size_t ranges, void (*call)(const void*, std::size_t), cons
   std::unique_lock<std::mutex> turn(workers.turn, std::defer_lock);
   const bool alone = inside_loop || threads == 1 || ranges < 2 || !turn.try_lock();
   if (alone) {
-    for (std::size_t range = 0; range < ranges; ++range)
+    for (std::size_t range = 0; range < ranges; ++range) {
+      if (ask_before_range != nullptr) ask_before_range();
       call(body, range);
+    }
     return;
   }
   Loop loop{ranges, call, body, {}, static_cast<unsigned>(std::min(threads, ranges) - 1), 0, nullptr};
@@ -115,4 +137,6 @@ void run_ranges(std::size_t ranges, void (*call)(const void*, std::size_t), cons
   if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
-} // namespace pointgi::detail
+} // namespace detail
+
+} // namespace pointgi

@@ -4,6 +4,10 @@
 
 namespace pointgi {
 
+/// The calling thread's loops call `ask` before each range that this thread takes itself. What `ask` throws ends the
+/// loop: ranges that no thread has begun are left out, and the loop throws it. Null: they call nothing.
+void before_ranges(void (*ask)());
+
 namespace detail {
 /// Calls call(body, range) for every range in [0, ranges).
 void run_ranges(std::size_t ranges, void (*call)(const void* body, std::size_t range), const void* body);

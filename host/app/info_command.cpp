@@ -1,7 +1,8 @@
+#include "host/app/command_run.h"
 #include "host/app/commands.h"
-#include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
 #include "host/scene/objects.h"
+#include "host/stages/prepare.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cmath>
@@ -73,6 +74,7 @@ float percentile(std::vector<float> values, double share) {
 } // namespace
 
 ExitCode run_info(const std::string& file) {
+  const CommandRun run(false);
   const bool is_scene = is_scene_file(file);
   const Scene scene = load_any(file, {});
   const WorldSplats splats = load_splats(scene);

@@ -1,12 +1,11 @@
+#include "host/app/command_run.h"
 #include "host/app/commands.h"
-#include "host/app/interrupt.h"
-#include "host/app/prepare.h"
 #include "host/app/profile_report.h"
-#include "host/app/progress.h"
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
+#include "host/stages/prepare.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>
@@ -112,12 +111,8 @@ Profile measure(Session& session, const Scene& scene, const PlacedSplats& placed
   // A quarter, for the scene's own buffers and other programs want some; on a CPU device it is the host's memory too.
   request.pool_bytes = std::min(request.pool_bytes, session.info().memory_bytes / 4);
   stages.start("profile");
-  Profile profile;
-  {
-    Progress progress("profile", options.quiet);
-    profile = profile_variants(
-        session, request, [&](double share) { progress.update(share); }, interrupted);
-  }
+  Profile profile = profile_variants(
+      session, request, [](double share) { report_progress(share); }, stop_asked);
   std::size_t launches = 0;
   double seconds = 0.0;
   for (const auto& [name, time] : session.kernel_times()) {
@@ -143,7 +138,7 @@ ExitCode run_profile(const ProfileOptions& options) {
   if (options.input.empty())
     throw Error(ErrorKind::usage, "profile: a scene or cloud to measure on is required; `pointgi profile --help` lists "
                                   "what there is");
-  catch_interrupts();
+  CommandRun run(options.quiet);
   StageLog stages;
   stages.start("scene");
   Scene scene = load_any(options.input, options.overrides);
@@ -173,6 +168,7 @@ ExitCode run_profile(const ProfileOptions& options) {
   report.seed = options.seed;
   report.invalid = invalid;
   store(options, report);
+  run.end_progress();
   std::printf("%s", profile_table(report).c_str());
   if (!options.output.empty()) {
     write_text(file_in(options.output, json_name), profile_json(report, stages).dump(1) + "\n");

@@ -1,7 +1,7 @@
 #pragma once
 /// What `pointgi profile` tells: a table for people, the same in Markdown, everything in JSON.
-#include "host/app/stages.h"
 #include "host/cl/device.h"
+#include "host/stages/stages.h"
 #include "host/tune/profile.h"
 #include <nlohmann/json.hpp>
 

@@ -37,7 +37,12 @@ Progress::Progress(std::string stage, bool quiet)
       start_(std::chrono::steady_clock::now()), last_(start_) {}
 
 Progress::~Progress() {
-  if (drawn_ && terminal_) std::fprintf(stderr, "\r\033[K"); // what follows is the result, not the bar
+  hide();
+}
+
+void Progress::hide() {
+  if (drawn_ && terminal_) std::fprintf(stderr, "\r\033[K");
+  drawn_ = false;
 }
 
 bool Progress::due() {

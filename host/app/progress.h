@@ -17,6 +17,8 @@ public:
   void update(double share);
   /// `done` so far, "12 applies", where nobody knows how much there will be.
   void tell(const std::string& done);
+  /// Takes the bar off the terminal, until it is drawn again.
+  void hide();
 
 private:
   bool due();

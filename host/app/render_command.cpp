@@ -1,12 +1,9 @@
+#include "host/api/parts.h"
+#include "host/app/command_run.h"
 #include "host/app/commands.h"
-#include "host/app/interrupt.h"
-#include "host/app/light_stages.h"
+#include "host/app/light_command.h"
 #include "host/app/output_files.h"
-#include "host/app/prepared_scene.h"
-#include "host/app/progress.h"
 #include "host/app/stats.h"
-#include "host/app/view_warnings.h"
-#include "host/cache/binary_cache.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -45,69 +42,37 @@ std::vector<std::string> all_overrides_of(const RenderOptions& options) {
   return overrides;
 }
 
-PixelWindow window_of(const RenderOptions& options, const RenderSettings& render) {
-  if (options.pixel_bounds.empty()) return {0, render.width, 0, render.height};
+/// The part of the picture that --pixelbounds asks for; absent: all.
+std::optional<std::array<int, 4>> window_of(const RenderOptions& options, const RenderSettings& render) {
+  if (options.pixel_bounds.empty()) return std::nullopt;
   const std::string form = "--pixelbounds: expected x0,x1,y0,y1 with 0 <= x0 < x1 <= " + std::to_string(render.width) +
                            " and 0 <= y0 < y1 <= " + std::to_string(render.height);
   const auto b = whole_numbers(options.pixel_bounds, ',', 4, form);
   if (b[0] >= b[1] || b[1] > render.width || b[2] >= b[3] || b[3] > render.height)
     throw Error(ErrorKind::usage, form + ", found \"" + options.pixel_bounds + "\"");
-  return {b[0], b[1], b[2], b[3]};
+  return std::array<int, 4>{b[0], b[1], b[2], b[3]};
 }
 
 std::string output_of(const RenderOptions& options) {
   return options.output.empty() ? std::filesystem::path(options.input).stem().string() + ".exr" : options.output;
 }
 
-/// The paths to trace, or nothing where no path is traced.
-std::optional<LightPaths> paths_of(const RenderOptions& options, const Scene& scene) {
-  if (options.integrator != "path") return std::nullopt;
-  return light_paths(options.paths, scene.render.max_depth);
-}
-
-PictureAttributes attributes_of(const Scene& scene, const RenderOptions& options, const Session& session,
-                                std::uint64_t scene_hash) {
-  PictureAttributes attributes;
-  char hash[17];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(scene_hash));
-  attributes.text["software"] = "pointgi " POINTGI_VERSION;
-  attributes.text["pointgi/device"] = session.info().name + " (" + session.info().platform + ")";
-  attributes.text["pointgi/scene_hash"] = hash;
-  attributes.text["pointgi/quality"] = options.quality;
-  attributes.text["pointgi/integrator"] = options.integrator;
-  if (!options.paths.empty()) attributes.text["pointgi/paths"] = options.paths;
-  attributes.number["samplesPerPixel"] = scene.render.spp;
-  attributes.world_to_camera = world_to_camera(scene);
-  attributes.world_to_ndc = world_to_ndc(scene);
-  return attributes;
-}
-
-/// What the picture depends on: splats, lights, camera and samples, as the device reads them.
-std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) {
-  const auto bytes = [](const auto& v) {
-    return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
-  };
-  std::uint64_t hash = fnv1a(bytes(points_of(pools)));
-  hash = fnv1a(bytes(lighting.delta), hash);
-  hash = fnv1a(bytes(lighting.materials), hash);
-  return fnv1a(std::string_view(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
-}
-
-Scene checked_scene(const RenderOptions& options) {
+/// Everything that can be refused is refused here, before the work and not after it.
+api::Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path" && !options.paths.empty())
     throw Error(ErrorKind::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
-  Scene scene = load_any(options.input, all_overrides_of(options));
-  apply_quality(options.quality, scene, options.spp.has_value());
+  api::Scene checked = api::Scene::from_file(options.input, all_overrides_of(options));
+  checked.set_quality(options.quality, !options.spp);
+  const Scene scene = checked.parts()->description();
   if (options.integrator != "path") require_possible_radiosity(scene);
-  // Before the work, not after it.
   const bool unnamed = options.output.empty();
   require_outputs(options.input, scene,
                   {{"-o", output_of(options), unnamed},
                    {"-o", png_path_of(output_of(options)), unnamed},
                    {"--stats", options.stats_file},
                    {"--trace", options.trace_file}});
-  return scene;
+  return checked;
 }
 
 /// Seconds of the device in all stages.
@@ -120,93 +85,76 @@ double kernel_seconds(const Session& session) {
 
 /// Renders and writes the picture; false when it was interrupted before a row was finished, which leaves an older
 /// picture alone.
-bool render_picture(Session& session, const DevicePools& pools, const RenderRequest& request, PictureWriter& writer,
-                    bool quiet, RenderTotals& totals, StageLog& stages) {
-  stages.start("render");
-  {
-    Progress progress("render", quiet);
-    totals = render(
-        session, pools, request, [&](const Band& band) { writer.write(band); },
-        [&](double share) { progress.update(share); }, interrupted);
-  }
-  stages.finish(totals.rays, "rays", totals.device_seconds);
-  for (const auto& [name, time] : session.kernel_times())
+bool render_picture(api::Context::Parts& context, api::FilmJob& job, PictureWriter& writer, const RunControl& control,
+                    RenderTotals& totals) {
+  totals = job.render([&](const Band& band) { writer.write(band); });
+  for (const auto& [name, time] : context.session.kernel_times())
     spdlog::debug("kernel {}: {} launches, {:.3f} s", name, time.launches, time.seconds);
   if (totals.interrupted && totals.rows_done == 0) return false;
-  const double render_seconds = stages.records().back().seconds;
-  stages.start("image");
+  const double render_seconds = context.stages.records().back().seconds;
+  const RunControl to_the_end{{}, control.progress, control.log}; // what is there is kept
+  const RunScope scope(to_the_end);
+  context.stages.start("image");
   writer.finish(render_seconds);
-  const PixelWindow& w = request.window;
-  stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
+  const PixelWindow& w = job.window();
+  context.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
   return true;
+}
+
+void write_reports(const RenderOptions& options, const api::Light::Parts& light, const RenderTotals& totals) {
+  const api::Prepared::Parts& prepared = *light.prepared;
+  const api::Context::Parts& context = *prepared.context;
+  if (!options.stats_file.empty()) {
+    Stats stats = stats_of(light);
+    stats.command = "render";
+    stats.integrator = options.integrator;
+    stats.render = totals;
+    stats.photons = light.light.ledger;
+    const Frame& frame = prepared.ready.frame;
+    stats.photon_watts = prepared.ready.lighting.radiance.scale * frame.side * frame.side;
+    write_stats(options.stats_file, stats, context.stages);
+  }
+  if (!options.trace_file.empty())
+    write_text(options.trace_file, context.stages.chrome_trace(context.session.launches()));
 }
 
 } // namespace
 
 ExitCode run_render(const RenderOptions& options) {
+  CommandRun run(options.quiet);
   StageLog stages;
-  Stats stats;
   stages.start("scene");
-  Scene scene = checked_scene(options);
-  const PixelWindow window = window_of(options, scene.render);
-  stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
+  const api::Scene scene = checked_scene(options);
+  const Scene description = scene.parts()->description();
+  api::FilmOptions film;
+  film.window = window_of(options, description.render);
+  film.paths = options.paths;
+  stages.finish(description.clouds.size() + description.shapes.size(), "objects");
 
-  Session session(choose_device(options.device));
-  session.dump_kernels_to(options.dump_folder);
-  if (!options.trace_file.empty()) session.record_launches();
-  spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
-
-  const PreparedScene ready = prepare_scene(session, scene, !is_scene_file(options.input), stages);
-  const TraversalVariant& variant = ready.choice.variant;
-  const OctreePools& pools = ready.pools;
-  const DeviceLighting& lighting = ready.lighting;
-  stats.octree = summary_of(pools);
-  const std::optional<LightPaths> paths = paths_of(options, scene);
-  bool told_of_black = paths && warn_of_paths(options.paths, scene, ready);
-  catch_interrupts();
-  const IndirectRequest wanted{variant,           scene,         ready.frame, lighting, points_of(pools),
-                               paths.has_value(), options.quiet, interrupted};
-  const SceneLight light = run_light_stages(session, ready.on_device, wanted, stages);
-  told_of_black = told_of_black || warn_of_unlit(scene, ready, light.indirect.direct, light.indirect.from_surfaces);
-  RenderRequest request{window, lighting, ready.frame, ready.ids, variant, paths};
-  request.first_ids = ready.first_ids;
-  Buffer<cl_float4> irradiance;
-  if (!light.indirect.from_surfaces.empty()) {
-    irradiance = upload_irradiance(session, light.indirect, scene);
-    request.irradiance = &irradiance;
-    request.shadow_rays = !direct_light_by_radiosity(scene);
-  }
-  request.normal_field = light.normal_field ? &*light.normal_field : nullptr;
-  request.photons = light.photons ? &*light.photons : nullptr;
-  PictureWriter writer(output_of(options), scene.render.width, scene.render.height, window,
-                       film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()),
-                       attributes_of(scene, options, session, hash_of(pools, lighting)), scene.render.exposure);
-  const bool written = render_picture(session, ready.on_device, request, writer, options.quiet, stats.render, stages);
-  if (!written)
+  const api::Context context = open_context(options, std::move(stages));
+  api::Context::Parts& device = *context.parts();
+  device.session.dump_kernels_to(options.dump_folder);
+  if (!options.trace_file.empty()) device.session.record_launches();
+  const api::Prepared prepared(context, scene, run.control());
+  const api::Light light(prepared, {true, options.integrator == "path"}, run.control());
+  api::FilmJob job(*light.parts(), film);
+  PictureWriter writer(output_of(options), description.render.width, description.render.height, job.window(),
+                       job.channels(), job.attributes(), description.render.exposure);
+  RenderTotals totals;
+  if (!render_picture(device, job, writer, run.control(), totals))
     throw Error(ErrorKind::interrupted, "interrupted before the first rows were finished; nothing was written");
-  warn_of_view(stats.render, scene, ready, told_of_black);
-  if (!options.stats_file.empty()) {
-    stats.command = "render";
-    stats.integrator = options.integrator;
-    stats.variant = ready.choice;
-    stats.scene = &scene;
-    stats.session = &session;
-    stats.indirect = &light.indirect;
-    stats.photons = light.ledger;
-    stats.photon_watts = lighting.radiance.scale * ready.frame.side * ready.frame.side;
-    stats.seconds = stages.seconds();
-    write_stats(options.stats_file, stats, stages);
-  }
-  if (!options.trace_file.empty()) write_text(options.trace_file, stages.chrome_trace(session.launches()));
+  job.warn(totals);
+  write_reports(options, *light.parts(), totals);
+  run.end_progress();
   std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());
-  if (stats.render.interrupted) {
-    spdlog::warn("interrupted: the picture holds its first {} of {} rows", stats.render.rows_done,
-                 window.y1 - window.y0);
+  if (totals.interrupted) {
+    spdlog::warn("interrupted: the picture holds its first {} of {} rows", totals.rows_done,
+                 job.window().y1 - job.window().y0);
     return ExitCode::interrupted;
   }
-  spdlog::info("{} splats, {:.1f} million rays, {} ({} of kernels on the device)", stats.octree.points,
-               1e-6 * static_cast<double>(stats.render.rays), duration_text(stages.seconds()),
-               duration_text(kernel_seconds(session)));
+  spdlog::info("{} splats, {:.1f} million rays, {} ({} of kernels on the device)", prepared.size(),
+               1e-6 * static_cast<double>(totals.rays), duration_text(device.stages.seconds()),
+               duration_text(kernel_seconds(device.session)));
   return ExitCode::done;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-#include "host/app/indirect_stages.h"
-#include "host/app/stages.h"
 #include "host/cl/session.h"
 #include "host/photon/trace_photons.h"
 #include "host/render/render.h"
+#include "host/stages/indirect_stages.h"
+#include "host/stages/stages.h"
 #include "host/tune/tuned.h"
 #include "octree/pack/pools.h"
 #include <nlohmann/json.hpp>

@@ -1,11 +1,11 @@
 #include "host/cache/vmap_cache.h"
 #include "host/atomic_file.h"
 #include "host/cache/binary_cache.h"
+#include "host/run.h"
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -175,7 +175,7 @@ VMap kept_or_made_links(const ClusterTree& tree, View<Splat> splats, VisibilityO
                         const LinkOptions& options, const std::string& answered_by, bool* was_kept) {
   const std::string key = vmap_key(tree, splats, options, answered_by);
   KeptVMap kept = load_vmap(key, tree);
-  if (!kept.warning.empty()) spdlog::warn("{}", kept.warning);
+  if (!kept.warning.empty()) log_warning("{}", kept.warning);
   if (was_kept != nullptr) *was_kept = kept.map.has_value();
   if (kept.map) return std::move(*kept.map);
   VMap map = make_links(tree, oracle, options);

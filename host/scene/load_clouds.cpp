@@ -60,12 +60,15 @@ void load_radius(const TableReader& table, CloudSettings& cloud) {
                              ", found " + found_text(*node));
 }
 
-CloudSettings load_cloud(const TableReader& table, const MaterialNames& materials, const std::string& scene_file) {
+CloudSettings load_cloud(const TableReader& table, const MaterialNames& materials, const std::string& scene_file,
+                         const CloudsInMemory& in_memory) {
   table.allow_only(
       {"file", "material", "scale", "rotate_deg", "translate", "radius", "normals", "viewpoint", "spacing"});
   CloudSettings cloud;
   cloud.place = table.place();
-  cloud.file = load_file(table, scene_file);
+  const auto given = in_memory.find(table.text("file").value_or(""));
+  if (given != in_memory.end()) cloud.points = given->second;
+  cloud.file = cloud.points ? given->first : load_file(table, scene_file);
   cloud.material = materials.read(table);
   if (const auto scale = table.number("scale", limits::scale)) cloud.scale = *scale;
   if (const auto rotate = table.vector3("rotate_deg", limits::angle)) cloud.rotate_deg = *rotate;
@@ -81,10 +84,10 @@ CloudSettings load_cloud(const TableReader& table, const MaterialNames& material
 } // namespace
 
 std::vector<CloudSettings> load_clouds(const TableReader& root, const MaterialNames& materials,
-                                       const std::string& scene_file) {
+                                       const std::string& scene_file, const CloudsInMemory& in_memory) {
   std::vector<CloudSettings> clouds;
   for (const TableReader& table : root.tables("cloud"))
-    clouds.push_back(load_cloud(table, materials, scene_file));
+    clouds.push_back(load_cloud(table, materials, scene_file, in_memory));
   return clouds;
 }
 

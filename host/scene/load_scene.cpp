@@ -2,6 +2,7 @@
 #include "host/cloud/input_file.h"
 #include "host/scene/load_sections.h"
 #include "host/scene/overrides.h"
+#include "host/scene/scene_document.h"
 #include "host/scene/scene_text.h"
 #include <algorithm>
 #include <filesystem>
@@ -16,14 +17,13 @@ std::string complaint(const toml::parse_error& error) {
   return text.compare(0, prefix.size(), prefix) == 0 ? text.substr(prefix.size()) : text;
 }
 
-toml::table parse_file(const std::string& path) {
-  const std::string text = read_scene_text(path);
-  check_nesting(text, path);
+toml::table parse(const std::string& text, const std::string& name) {
+  check_nesting(text, name);
   try {
     // Without a source path: nodes that carry one came from --set (toml_words.h).
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(ErrorKind::input, place_of(error.source(), path).text() + ": not valid TOML: " + complaint(error));
+    throw Error(ErrorKind::input, place_of(error.source(), name).text() + ": not valid TOML: " + complaint(error));
   }
 }
 
@@ -47,10 +47,11 @@ bool shines(const Scene& scene) {
          std::any_of(scene.shapes.begin(), scene.shapes.end(), emits);
 }
 
-/// The scene that a document describes; errors name `path`. `scene_file` is the file that it was read from, which its
-/// clouds are relative to and cannot be themselves; empty for a document that was made here.
-Scene scene_of_document(const toml::table& document, const std::string& path, const std::string& scene_file) {
-  const TableReader root(document, path, "");
+} // namespace
+
+Scene scene_of(const SceneDocument& document) {
+  const std::string& path = document.name;
+  const TableReader root(document.table, path, "");
   check_version(root);
   root.allow_only({"version", "up", "render", "camera", "material", "cloud", "shape", "light", "environment",
                    "radiosity", "caustics", "octree", "traversal"});
@@ -65,7 +66,7 @@ Scene scene_of_document(const toml::table& document, const std::string& path, co
   load_camera(root, scene.up, scene.camera);
   scene.materials = load_materials(root, scene.warnings);
   const MaterialNames names(scene.materials);
-  scene.clouds = load_clouds(root, names, scene_file);
+  scene.clouds = load_clouds(root, names, document.scene_file, document.in_memory);
   scene.shapes = load_shapes(root, names);
   scene.lights = load_lights(root);
   load_environment(root, scene.environment);
@@ -81,30 +82,41 @@ Scene scene_of_document(const toml::table& document, const std::string& path, co
   if (!shines(scene))
     scene.warnings.push_back(path + ": nothing gives light, the picture will be black; add a [[light]], an "
                                     "[environment] or a material with emission.");
+  if (document.bare) {
+    if (scene.clouds.size() == 1) scene.clouds.front().file = path; // named as the user named it
+    scene.warnings.clear();                                         // of the one that there is no light
+  }
   return scene;
 }
 
-} // namespace
-
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  toml::table document = parse_file(path);
-  apply_overrides(document, overrides);
-  return scene_of_document(document, path, path);
+SceneDocument document_of_file(const std::string& path) {
+  return {parse(read_scene_text(path), path), path, path, {}};
 }
 
-Scene load_bare_cloud(const std::string& path, const std::vector<std::string>& overrides) {
+SceneDocument document_of_text(const std::string& text, const std::string& name, const std::string& folder) {
+  return {parse(text, name), name, (std::filesystem::path(folder) / name).string(), {}};
+}
+
+SceneDocument document_of_cloud(const std::string& path) {
   require_regular_file(path);
   const char* name = "points";
-  toml::table document{
+  toml::table table{
       {"version", 1},
       {"material", toml::array{toml::table{{"name", name}, {"type", "diffuse"}}}},
       {"cloud", toml::array{toml::table{{"file", std::filesystem::absolute(path).string()}, {"material", name}}}}};
-  apply_overrides(document, overrides);
-  Scene scene = scene_of_document(document, path, "");
-  if (scene.clouds.size() == 1) // named as the user named it
-    scene.clouds.front().file = path;
-  scene.warnings.clear(); // of the one that there is no light: the caller chooses it
-  return scene;
+  return {std::move(table), path, "", {}, true};
+}
+
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  SceneDocument document = document_of_file(path);
+  apply_overrides(document.table, overrides);
+  return scene_of(document);
+}
+
+Scene load_bare_cloud(const std::string& path, const std::vector<std::string>& overrides) {
+  SceneDocument document = document_of_cloud(path);
+  apply_overrides(document.table, overrides);
+  return scene_of(document);
 }
 
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #pragma once
 /// The parts of a scene file, a function each; load_scene() calls them in turn.
+#include "host/scene/scene_document.h"
 #include "host/scene/toml_reader.h"
 #include <string>
 #include <unordered_set>
@@ -34,9 +35,10 @@ private:
   std::unordered_set<std::string> known_;
 };
 
-/// `scene_file`: files are relative to its folder, and it cannot be a cloud itself.
+/// `scene_file`: files are relative to its folder, and it cannot be a cloud itself. `in_memory`: clouds that are found
+/// there by their `file` and not among the files.
 std::vector<CloudSettings> load_clouds(const TableReader& root, const MaterialNames& materials,
-                                       const std::string& scene_file);
+                                       const std::string& scene_file, const CloudsInMemory& in_memory);
 
 std::vector<ShapeSettings> load_shapes(const TableReader& root, const MaterialNames& materials);
 std::vector<LightSettings> load_lights(const TableReader& root);

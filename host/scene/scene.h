@@ -4,6 +4,7 @@
 #include "octree/build/curve.h"
 #include "shared/render_types.h"
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -79,6 +80,7 @@ struct CloudSettings {
   std::optional<Vector3d> viewpoint; ///< sensor position in the file's coordinates
   double spacing = 0.0;              ///< for meshes: distance of the sampled splats, world units; 0 = chosen
   SourcePlace place;
+  std::shared_ptr<const PointCloud> points; ///< in memory, called `file`; null: in that file
 };
 
 struct QuadShape {

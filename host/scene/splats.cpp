@@ -96,13 +96,16 @@ void refuse_scanner_format(const std::string& file) {
 } // namespace
 
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  refuse_scanner_format(settings.file);
-  PointCloud cloud = has_extension(settings.file, ".ply")
+  if (!settings.points) refuse_scanner_format(settings.file);
+  PointCloud cloud = settings.points ? *settings.points
+                     : has_extension(settings.file, ".ply")
                          ? read_ply(settings.file, report)
                          : sample_mesh(settings.file, settings.spacing / settings.scale, report);
+  if (settings.points) report.format = "arrays in memory";
   try {
     complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);
   } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw; // it is no fault of the cloud
     throw Error(error.kind(), settings.file + ": " + error.what());
   }
   cloud.triangle = {}; // they have given their normals; nothing later reads them

@@ -3,9 +3,9 @@
 /// pictures of the scene's own size, from the prepared cloud on, in turn, A B A B, and the median of the pairs counts.
 /// The path tracer takes few samples there, as many more of which would take that many times as long. bench_equal_error
 /// --help
-#include "host/app/light_stages.h"
-#include "host/app/prepared_scene.h"
 #include "host/render/render.h"
+#include "host/stages/light_stages.h"
+#include "host/stages/prepared_scene.h"
 #include "tests/bench/reference_halves.h"
 #include "tests/support/cache_folder.h"
 #include <CLI/CLI.hpp>
@@ -46,8 +46,8 @@ public:
     StageLog stages;
     // What has no effect on paths is not worth a warning here.
     spdlog::set_level(by_paths ? spdlog::level::err : spdlog::level::warn);
-    const IndirectRequest request{ready_.choice.variant,   scene_,   ready_.frame, ready_.lighting,
-                                  points_of(ready_.pools), by_paths, true,         [] { return false; }};
+    const IndirectRequest request{ready_.choice.variant,   scene_,  ready_.frame, ready_.lighting,
+                                  points_of(ready_.pools), by_paths};
     Solved solved;
     solved.light = run_light_stages(session_, ready_.on_device, request, stages);
     if (!solved.light.indirect.from_surfaces.empty())

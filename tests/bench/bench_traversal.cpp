@@ -1,11 +1,11 @@
 /// Rays through the octree against Embree over the same splats, rays and threads, A B A B, medians of the pairs.
 ///   bench_traversal [--json FILE] [--markdown FILE] [--splats N,…] [--pairs K] [--form step|wide] [--clock wall|cpu]
 ///                   [CLOUD.ply …]
-#include "host/app/prepare.h"
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
 #include "host/passes/ray_packets.h"
 #include "host/scene/lighting.h"
+#include "host/stages/prepare.h"
 #include "host/tune/profile.h"
 #include "host/tune/profile_rays.h"
 #include "host/tune/tuned.h"

@@ -4,6 +4,8 @@
 #include "tests/support/scans.h"
 #include "tests/support/stats_file.h"
 #include <catch2/catch.hpp>
+#include <cstring>
+#include <random>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -248,6 +250,27 @@ TEST_CASE("an interrupted render keeps a partial picture, and a killed one keeps
   const Picture partial = read_exr(out);
   CHECK(partial.width == 600);
   CHECK(partial.height == 2000);
+}
+
+TEST_CASE("an interrupt between the launches of the device ends the program with a word") {
+  const TemporaryFolder folder;
+  std::mt19937 g(1);
+  std::uniform_real_distribution<float> coordinate(-1.0f, 1.0f);
+  std::string points(3 * sizeof(float) * 400'000, '\0'); // no surface: seconds of work to find normals, on any machine
+  for (std::size_t i = 0; i < points.size(); i += sizeof(float)) {
+    const float value = coordinate(g);
+    std::memcpy(&points[i], &value, sizeof value);
+  }
+  const std::string cloud = folder.write("noise.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 400000\n"
+                                                      "property float x\nproperty float y\nproperty float z\n"
+                                                      "end_header\n" +
+                                                          points);
+  // Whenever the signal comes, there is a word for the stage that it ends. --foreground: it comes once.
+  const Run run = run_program("render " + cloud + " --size 2000x2000 -o " + folder.file("x.exr"),
+                              "timeout --foreground --preserve-status -s INT 0.5");
+  CHECK(run.code == 130);
+  CHECK_THAT(run.err, Contains("error: interrupted in the stage ") && Contains("; nothing was written"));
+  CHECK_FALSE(std::filesystem::exists(folder.file("x.exr")));
 }
 
 TEST_CASE("kernels can be edited, and their errors name our files") {

@@ -1,10 +1,10 @@
 #pragma once
 /// The photons of a scene text, as the render command sends them.
-#include "host/app/indirect_stages.h"
-#include "host/app/prepare.h"
-#include "host/app/stages.h"
 #include "host/passes/build_pools.h"
 #include "host/photon/trace_photons.h"
+#include "host/stages/indirect_stages.h"
+#include "host/stages/prepare.h"
+#include "host/stages/stages.h"
 #include "host/tune/variant_list.h"
 #include "tests/support/device.h"
 #include "tests/support/temporary_folder.h"

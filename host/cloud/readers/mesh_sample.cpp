@@ -1,4 +1,5 @@
 #include "host/cloud/readers/mesh_sample.h"
+#include "host/run.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -168,6 +169,7 @@ PointCloud sample_triangles(const std::vector<MeshTriangle>& triangles, double w
   Occupied occupied(closest_in_spacings * std::sqrt(area / wanted), origin, static_cast<std::size_t>(wanted));
   const auto tries = static_cast<std::uint64_t>(std::ceil(wanted)) * tries_per_point;
   for (std::uint64_t i = 0; i < tries; ++i) {
+    if (i % 65536 == 0) stop_if_asked();
     const Candidate c = source.make(i);
     if (!occupied.try_add(c.position, c.facing)) continue;
     const MeshTriangle& t = triangles[c.triangle];

@@ -2,6 +2,7 @@
 #include "host/cloud/readers/ply.h"
 #include "host/cloud/readers/ply_body.h"
 #include "host/cloud/readers/ply_layout.h"
+#include "host/run.h"
 #include <algorithm>
 #include <limits>
 
@@ -53,6 +54,7 @@ private:
     cloud_.radius.resize(layout_.has_radius ? count : 0);
     std::array<double, slot_count> row{};
     for (std::size_t i = 0; i < count; ++i) {
+      if (i % 65536 == 0) stop_if_asked();
       body_.begin_record(vertex, i);
       for (std::size_t p = 0; p < vertex.properties.size(); ++p) {
         const PlyProperty& property = vertex.properties[p];

@@ -112,3 +112,26 @@ TEST_CASE("the pools are the same bits for any number of threads") {
     }
   }
 }
+
+TEST_CASE("a parallel loop ends where its caller's question throws, and asks no other thread") {
+  const Threads threads(GENERATE(1, 2, 5));
+  static int left;
+  static std::thread::id caller;
+  left = 3;
+  caller = std::this_thread::get_id();
+  before_ranges([] {
+    REQUIRE(std::this_thread::get_id() == caller);
+    if (left-- == 0) throw std::runtime_error("enough");
+  });
+  std::atomic<std::size_t> ranges{0};
+  const auto body = [&](std::size_t, std::size_t) {
+    ++ranges;
+    std::this_thread::yield();
+  };
+  CHECK_THROWS_WITH(parallel_ranges(10'000'000, 1, body), "enough");
+  before_ranges(nullptr);
+  CHECK(ranges < 10'000'000);
+  ranges = 0;
+  parallel_ranges(100, 1, body);
+  CHECK(ranges == 100);
+}

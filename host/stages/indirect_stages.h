@@ -1,8 +1,8 @@
 #pragma once
 /// The stages of indirect light, between the octree and the picture: which the scene needs, and what they found.
-#include "host/app/stages.h"
 #include "host/radiosity/method.h"
 #include "host/scene/frame.h"
+#include "host/stages/stages.h"
 #include <functional>
 #include <optional>
 
@@ -25,19 +25,17 @@ struct IndirectRequest {
   const Scene& scene;
   const Frame& frame;
   const DeviceLighting& lighting;
-  View<Splat> points;         ///< of the pool
-  bool by_paths = false;      ///< a path tracer makes the picture
-  bool quiet = false;         ///< no progress
-  std::function<bool()> stop; ///< asked before every launch
-  View<float> caustic{};      ///< [points x 3] as IndirectLight: irradiance that photons bring and that surfaces pass
-                              ///< on; empty: none
+  View<Splat> points;    ///< of the pool
+  bool by_paths = false; ///< a path tracer makes the picture
+  View<float> caustic{}; ///< [points x 3] as IndirectLight: irradiance that photons bring and that surfaces pass
+                         ///< on; empty: none
 };
 
 /// The method that the scene asks for; nullptr: light is not exchanged.
 const RadiosityMethod* radiosity_method_of(const Scene& scene);
 
 /// Runs `vmap` and the stage of the scene's method, which has the method's name, where the scene needs them, and says
-/// of each stage that does not run why. Throws Error(interrupted) when `stop` says so.
+/// of each stage that does not run why. Throws Error(interrupted) when the run (host/run.h) is to stop.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 

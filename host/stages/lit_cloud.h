@@ -1,7 +1,7 @@
 #pragma once
 /// The solution as a point cloud: what `pointgi bake` writes (interface.md).
-#include "host/app/indirect_stages.h"
 #include "host/cloud/readers/ply.h"
+#include "host/stages/indirect_stages.h"
 
 namespace pointgi {
 

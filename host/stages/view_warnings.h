@@ -1,8 +1,8 @@
 #pragma once
 /// What black or empty pictures most often come from, said in the log.
-#include "host/app/indirect_stages.h"
-#include "host/app/prepared_scene.h"
 #include "host/render/render.h"
+#include "host/stages/indirect_stages.h"
+#include "host/stages/prepared_scene.h"
 
 namespace pointgi {
 

@@ -1,4 +1,5 @@
-#include "host/app/stages.h"
+#include "host/stages/stages.h"
+#include "host/run.h"
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@ double StageLog::seconds() const {
 }
 
 void StageLog::start(const std::string& name) {
+  begin_stage(name);
   StageRecord record;
   record.name = name;
   record.ran = true;

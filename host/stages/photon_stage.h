@@ -1,7 +1,7 @@
 #pragma once
 /// The stage `photon`: which scenes need it, and what it found.
-#include "host/app/indirect_stages.h"
 #include "host/photon/trace_photons.h"
+#include "host/stages/indirect_stages.h"
 
 namespace pointgi {
 
@@ -11,8 +11,8 @@ struct Caustics {
 };
 
 /// Sends photons where the scene has specular splats, light and caustics.photons > 0, and says why not where it does
-/// not. `normal_field`: of the specular splats; null: there are none. Throws Error(interrupted) when request.stop says
-/// so.
+/// not. `normal_field`: of the specular splats; null: there are none. Throws Error(interrupted) when the run
+/// (host/run.h) is to stop.
 Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
                           const Buffer<cl_float4>* normal_field, StageLog& stages);
 

@@ -1,6 +1,6 @@
-#include "host/app/light_stages.h"
+#include "host/stages/light_stages.h"
 #include "host/photon/diffuse_photons.h"
-#include <spdlog/spdlog.h>
+#include "host/run.h"
 
 namespace pointgi {
 
@@ -33,9 +33,9 @@ void add_rounds(Session& session, const DevicePools& pools, const IndirectReques
     const std::vector<float> passed_on = add_exchange(session, request, entering, share, indirect, stages);
     sent = reflected_radiosity(request, {entering, passed_on});
   }
-  spdlog::warn("caustics: after {} rounds between surfaces and mirrors, {:.1f} % of the light still goes on; it is "
-               "left out",
-               most_rounds, 100.0 * share);
+  log_warning("caustics: after {} rounds between surfaces and mirrors, {:.1f} % of the light still goes on; it is "
+              "left out",
+              most_rounds, 100.0 * share);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "host/app/lit_cloud.h"
+#include "host/stages/lit_cloud.h"
 #include "host/image/srgb.h"
 #include <algorithm>
 #include <cmath>

@@ -23,7 +23,7 @@ class StageLog {
 public:
   StageLog() : begin_(std::chrono::steady_clock::now()) {}
 
-  /// Opens a stage, which finish() closes.
+  /// Opens a stage, which finish() closes. Throws Error(interrupted) when the run (host/run.h) is to stop.
   void start(const std::string& name);
   void finish(std::uint64_t items, const std::string& unit, double device_seconds = 0.0);
   void skip(const std::string& name, const std::string& reason);

@@ -1,6 +1,6 @@
 #pragma once
 /// All stages of light between the octree and the picture, in the order that the scene asks for.
-#include "host/app/photon_stage.h"
+#include "host/stages/photon_stage.h"
 
 namespace pointgi {
 

@@ -1,9 +1,9 @@
-#include "host/app/prepare.h"
+#include "host/stages/prepare.h"
 #include "host/cloud/input_file.h"
+#include "host/run.h"
 #include "host/scene/merge_coincident.h"
 #include "host/view/default_view.h"
 #include <numeric>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -19,19 +19,19 @@ namespace {
 
 void log_reports(const Scene& scene, const WorldSplats& splats) {
   for (const std::string& warning : scene.warnings)
-    spdlog::warn("{}", warning);
+    log_warning("{}", warning);
   for (std::size_t i = 0; i < splats.reports.size(); ++i) {
     const CloudReport& r = splats.reports[i];
-    spdlog::info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
-                 r.normals_from, r.radii_from);
+    log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
+             r.normals_from, r.radii_from);
     for (const std::string& warning : r.warnings)
-      spdlog::warn("{}: {}", scene.clouds[i].file, warning);
+      log_warning("{}: {}", scene.clouds[i].file, warning);
   }
 }
 
 /// What the user left open is chosen so that the picture is worth looking at.
 void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
-  if (!scene.camera.chosen) spdlog::info("{}", choose_camera(scene, splats));
+  if (!scene.camera.chosen) log_info("{}", choose_camera(scene, splats));
   if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
 }
 
@@ -48,7 +48,7 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   placed.id.resize(placed.splats.size());
   std::iota(placed.id.begin(), placed.id.end(), 0u);
   if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)
-    spdlog::info("{} points that lie on others were merged with them", merged);
+    log_info("{} points that lie on others were merged with them", merged);
   return placed;
 }
 

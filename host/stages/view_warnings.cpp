@@ -1,9 +1,8 @@
-#include "host/app/view_warnings.h"
+#include "host/stages/view_warnings.h"
 #include "host/lights/light_kind.h"
+#include "host/run.h"
 #include "host/scene/objects.h"
 #include <algorithm>
-#include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -64,36 +63,35 @@ bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedSc
                           !lighting.delta.empty()};
   const std::string reason = why_no_path(list, scene.render.max_depth, supply);
   if (reason.empty()) return false;
-  spdlog::warn("the picture will be black: {}none of the light paths that count can be in this scene: {}",
-               list.empty() ? "" : "--paths " + list + ": ", reason);
+  log_warning("the picture will be black: {}none of the light paths that count can be in this scene: {}",
+              list.empty() ? "" : "--paths " + list + ": ", reason);
   return true;
 }
 
 bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> direct, View<float> from_surfaces) {
   if (!ready.lighting.has_light() || ready.lighting.has_specular() || direct.size == 0) return false;
   if (!is_dark(direct) || !is_dark(from_surfaces)) return false;
-  spdlog::warn("no light reaches any surface: {}", suspects(scene));
+  log_warning("no light reaches any surface: {}", suspects(scene));
   return true;
 }
 
 void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool told) {
   if (totals.eye_rays_on_splats == 0 && !totals.interrupted && totals.eye_rays > 0) {
     const Vector3d& low = ready.frame.origin;
-    spdlog::warn(
-        "no eye ray met a splat: the splats lie within {} and {}, the camera is at {}; are the units the same, "
-        "and does it look that way?",
-        text(low), text(low + Vector3d::Constant(ready.frame.side)), text(scene.camera.position));
+    log_warning("no eye ray met a splat: the splats lie within {} and {}, the camera is at {}; are the units the same, "
+                "and does it look that way?",
+                text(low), text(low + Vector3d::Constant(ready.frame.side)), text(scene.camera.position));
     return;
   }
   const double backs = totals.back_face_share();
   if (backs > 0.1)
-    spdlog::warn("{:.0f} % of the eye rays that hit a splat met its back, which is black: {}", 100.0 * backs,
-                 advice_on_backs(totals, scene));
+    log_warning("{:.0f} % of the eye rays that hit a splat met its back, which is black: {}", 100.0 * backs,
+                advice_on_backs(totals, scene));
   if (totals.lit || totals.interrupted || told || !ready.lighting.has_light()) return;
   if (totals.eye_rays_on_back_faces == totals.eye_rays_on_splats) return; // said above
   const bool reflects = has_reflectors(scene, points_of(ready.pools)) || ready.lighting.has_specular();
-  spdlog::warn("the picture is all black: {}", reflects ? "no light reaches what the camera sees: " + suspects(scene)
-                                                        : "nothing reflects light: give a material an albedo above 0");
+  log_warning("the picture is all black: {}", reflects ? "no light reaches what the camera sees: " + suspects(scene)
+                                                       : "nothing reflects light: give a material an albedo above 0");
 }
 
 } // namespace pointgi

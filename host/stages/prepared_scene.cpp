@@ -1,9 +1,9 @@
-#include "host/app/prepared_scene.h"
+#include "host/stages/prepared_scene.h"
 #include "host/passes/build_pools.h"
+#include "host/run.h"
 #include "host/scene/limits.h"
 #include <algorithm>
 #include <cmath>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -12,7 +12,7 @@ namespace {
 /// Device memory as the variant wants it, plain buffers where the device's images are too small.
 DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
   if (!images_fit(session.info(), pools, variant.storage)) {
-    spdlog::warn("the device's images are missing or too small for the octree: plain buffers are used instead");
+    log_warning("the device's images are missing or too small for the octree: plain buffers are used instead");
     variant.storage = PoolStorage::buffer;
   }
   return upload_pools(session, pools, variant.storage);
@@ -21,9 +21,9 @@ DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant&
 /// The scene's wishes first, then what a profile of this device found, then the defaults of its class.
 VariantChoice choose_for(const Scene& scene, const DeviceInfo& device) {
   const StoredWinner stored = stored_winner(device);
-  if (!stored.warning.empty()) spdlog::warn("{}", stored.warning);
+  if (!stored.warning.empty()) log_warning("{}", stored.warning);
   const VariantChoice choice = choose_variant(scene.traversal, scene.octree, device, stored.file);
-  spdlog::info("variant: {} ({})", name_of(choice.variant), choice.source);
+  log_info("variant: {} ({})", name_of(choice.variant), choice.source);
   return choice;
 }
 
@@ -46,13 +46,6 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   stages.finish(summary_of(ready.pools).nodes, "nodes");
   ready.lighting = device_lighting(scene, ready.frame, points_of(ready.pools));
   return ready;
-}
-
-std::vector<std::string> overrides_of(const LightOptions& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (options.seed) overrides.push_back("render.seed=" + std::to_string(*options.seed));
-  if (options.exposure) overrides.push_back("render.exposure=" + std::to_string(*options.exposure));
-  return overrides;
 }
 
 void apply_quality(const std::string& quality, Scene& scene, bool samples_given) {

@@ -1,10 +1,9 @@
 #pragma once
 /// From a scene's description to what the stages of light work on: the way that render and bake share.
-#include "host/app/commands.h"
-#include "host/app/prepare.h"
-#include "host/app/stages.h"
 #include "host/passes/device_pools.h"
 #include "host/scene/lighting.h"
+#include "host/stages/prepare.h"
+#include "host/stages/stages.h"
 #include "host/tune/tuned.h"
 #include "octree/pack/pools.h"
 
@@ -24,9 +23,6 @@ struct PreparedScene {
 /// The stages `cloud` and `octree`: loads and places, chooses a view and a variant where the scene leaves them open,
 /// builds, uploads. `bare`: the scene stands around a bare cloud. Throws what these do.
 PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog& stages);
-
-/// The flags that every command that computes light has, as overrides of the scene file: one place checks both.
-std::vector<std::string> overrides_of(const LightOptions& options);
 
 /// --quality, a picture's noise and the exchange's error together: "draft" is a quarter of the scene's samples a pixel,
 /// unless `samples_given` with the command, and four times its radiosity.epsilon, but no more than

@@ -1,10 +1,9 @@
-#include "host/app/photon_stage.h"
-#include "host/app/progress.h"
+#include "host/stages/photon_stage.h"
 #include "host/error.h"
 #include "host/photon/diffuse_photons.h"
+#include "host/run.h"
 #include <algorithm>
 #include <cmath>
-#include <spdlog/spdlog.h>
 
 namespace pointgi {
 
@@ -13,8 +12,6 @@ namespace {
 /// Photons farther off than this share of the scene's cube do not count, where [caustics] does not say how far: what is
 /// lit so little that k photons lie farther apart gets a mean over that disc.
 constexpr double default_radius = 0.05;
-
-constexpr const char* interrupted_in_photon = "interrupted in the stage photon; nothing was written";
 
 /// Empty when photons are sent.
 std::string reason_against(const IndirectRequest& request, bool specular) {
@@ -36,20 +33,17 @@ template <typename Send>
 void fly(const IndirectRequest& request, Caustics& caustics, StageLog& stages, const Send& send) {
   stages.start("photon");
   const std::size_t room = room_for(request, caustics);
-  TracedPhotons traced = [&] {
-    Progress progress("photon", request.quiet);
-    return send(FlightControl{request.stop, [&](double share) { progress.update(share); }, room});
-  }();
-  if (traced.stopped) throw Error(ErrorKind::interrupted, interrupted_in_photon);
+  TracedPhotons traced = send(FlightControl{stop_asked, [](double share) { report_progress(share); }, room});
+  if (traced.stopped) throw interruption();
   const PhotonLedger& ledger = traced.ledger;
   stages.finish(ledger.aimed, "photons", ledger.device_seconds);
-  spdlog::info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
-               ledger.emitted, ledger.stored, ledger.absorbed, ledger.escaped, ledger.cut);
+  log_info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",
+           ledger.emitted, ledger.stored, ledger.absorbed, ledger.escaped, ledger.cut);
   if (traced.one_of > 1)
-    spdlog::warn("caustics: memory is kept for {} stored photons: one of {} stays, {} times as bright; "
-                 "caustics.photons = {} would keep all",
-                 room, traced.one_of, traced.one_of,
-                 request.scene.caustics.photons / static_cast<long long>(traced.one_of));
+    log_warning("caustics: memory is kept for {} stored photons: one of {} stays, {} times as bright; "
+                "caustics.photons = {} would keep all",
+                room, traced.one_of, traced.one_of,
+                request.scene.caustics.photons / static_cast<long long>(traced.one_of));
   if (caustics.photons.empty())
     caustics.photons = std::move(traced.stored);
   else
@@ -67,13 +61,13 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
   const std::string reason = reason_against(request, normal_field != nullptr);
   if (!reason.empty()) {
     if (settings.place && settings.photons > 0)
-      spdlog::warn("{}: [caustics] has no effect: {}", settings.place->text(), reason);
+      log_warning("{}: [caustics] has no effect: {}", settings.place->text(), reason);
     stages.skip("photon", reason);
     return caustics;
   }
   if (const std::string exchange = reason_against_radiosity(request);
       settings.place && !exchange.empty() && (settings.feedback || settings.indirect))
-    spdlog::warn("{}: [caustics] feedback and indirect have no effect: {}", settings.place->text(), exchange);
+    log_warning("{}: [caustics] feedback and indirect have no effect: {}", settings.place->text(), exchange);
   fly(request, caustics, stages, [&](const FlightControl& control) {
     return send_photons(session, pools, request.variant, request.lighting,
                         photon_sources(request.lighting, request.points), request.points, *normal_field, settings,
@@ -100,14 +94,13 @@ std::optional<DevicePhotonMap> upload_caustics(Session& session, const Caustics&
                                                const IndirectRequest& request, StageLog& stages) {
   if (caustics.photons.empty()) return std::nullopt;
   stages.start("photon");
-  Progress progress("photon", request.quiet);
   const CausticSettings& settings = request.scene.caustics;
   const double radius = settings.max_radius ? *settings.max_radius / request.frame.side : default_radius;
   DevicePhotonMap map =
       upload_photon_map(session, build_photon_map(caustics.photons), static_cast<unsigned>(settings.gather_k), radius);
   const bool whole = store_caustics(session, request.points, exchanging_materials(request.scene), map,
-                                    {request.stop, [&](double share) { progress.update(share); }});
-  if (!whole) throw Error(ErrorKind::interrupted, interrupted_in_photon);
+                                    {stop_asked, [](double share) { report_progress(share); }});
+  if (!whole) throw interruption();
   stages.finish(request.points.size, "points");
   return map;
 }

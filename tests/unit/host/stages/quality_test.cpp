@@ -1,5 +1,5 @@
-#include "host/app/prepared_scene.h"
 #include "host/scene/limits.h"
+#include "host/stages/prepared_scene.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;

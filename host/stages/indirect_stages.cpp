@@ -1,10 +1,9 @@
-#include "host/app/indirect_stages.h"
-#include "host/app/progress.h"
+#include "host/stages/indirect_stages.h"
 #include "host/cloud/normal_field.h"
 #include "host/error.h"
 #include "host/radiosity/point_irradiance.h"
+#include "host/run.h"
 #include <algorithm>
-#include <spdlog/spdlog.h>
 #include <stdexcept>
 
 namespace pointgi {
@@ -30,14 +29,13 @@ unsigned samples_for(const IndirectRequest& request, bool with_emitters) {
   return static_cast<unsigned>(scene.radiosity.light_samples.value_or(unless_told));
 }
 
-/// Progress of a stage, and Ctrl-C, both at every launch of the device.
+/// Progress of a stage, and an end on request, both at every launch of the device.
 class StageWatch {
 public:
-  StageWatch(Session& session, const std::string& stage, const IndirectRequest& request)
-      : session_(session), progress_(stage, request.quiet) {
-    session_.before_launches([this, stage, stop = request.stop] {
-      if (stop()) throw Error(ErrorKind::interrupted, "interrupted in the stage " + stage + "; nothing was written");
-      progress_.tell(done_);
+  explicit StageWatch(Session& session) : session_(session) {
+    session_.before_launches([this] {
+      stop_if_asked();
+      report_progress(done_);
     });
   }
   ~StageWatch() { session_.before_launches({}); }
@@ -50,7 +48,6 @@ public:
 
 private:
   Session& session_;
-  Progress progress_;
   std::string done_ = "at work";
 };
 
@@ -151,9 +148,9 @@ namespace {
 RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
                       StageLog& stages) {
   stages.start("vmap");
-  StageWatch watch(session, "vmap", request);
+  StageWatch watch(session);
   RadiosityMap map = map_visibility(session, exchange, request.scene.radiosity, watch.report());
-  if (map.kept) spdlog::info("V-map: kept from an earlier run");
+  if (map.kept) log_info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
   return map;
 }
@@ -176,7 +173,7 @@ RadiosityField run_exchange(Session& session, const RadiosityMethod& method, std
                             const ExchangeScene& exchange, const IndirectRequest& request, IndirectLight& light,
                             StageLog& stages) {
   stages.start(method.name);
-  StageWatch watch(session, method.name, request);
+  StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
   light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
@@ -192,16 +189,15 @@ RadiosityField run_exchange(Session& session, const RadiosityMethod& method, std
 }
 
 void report_solution(const IndirectLight& light, const Solution& solution) {
-  spdlog::info("radiosity: {}, {} applies of the operator, residual {:.2g}", light.prepared->summary(),
-               solution.applies, solution.residual);
-  if (const std::string complaint = complaint_of(solution); !complaint.empty())
-    spdlog::warn("radiosity: {}", complaint);
+  log_info("radiosity: {}, {} applies of the operator, residual {:.2g}", light.prepared->summary(), solution.applies,
+           solution.residual);
+  if (const std::string complaint = complaint_of(solution); !complaint.empty()) log_warning("radiosity: {}", complaint);
 }
 
 } // namespace
 
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request) {
-  const StageWatch watch(session, "direct light", request);
+  const StageWatch watch(session);
   if (!request.lighting.has_light()) return std::vector<float>(3 * request.points.size);
   return direct_light(session, pools, request, true);
 }
@@ -217,7 +213,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   const RadiosityMethod* method = radiosity_method_of(request.scene);
   if (const std::string reason = reason_against_radiosity(request); !reason.empty()) {
     if (settings.place && method != nullptr)
-      spdlog::warn("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
+      log_warning("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
     stages.skip("vmap", reason);
     stages.skip(method != nullptr ? method->name : radiosity_methods().front()->name, reason);
     return light;
@@ -244,7 +240,7 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   if (!method.is_linear)
     throw std::logic_error("radiosity: light added to what a method that is not linear has solved");
   stages.start(method.name);
-  StageWatch watch(session, method.name, request);
+  StageWatch watch(session);
   const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
   RadiosityField field = light.prepared->solve({entering, {}}, tolerance, watch.report());
   for (std::size_t i = 0; i < light.from_surfaces.size(); ++i)

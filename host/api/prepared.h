@@ -1,0 +1,73 @@
+#pragma once
+/// A scene on the device, and the light in it.
+#include "host/api/context.h"
+#include "host/api/scene.h"
+#include "host/run_control.h"
+#include <array>
+#include <optional>
+
+namespace pointgi::api {
+
+/// Where a picture is taken from.
+struct Camera {
+  std::array<double, 3> position{};
+  std::array<double, 3> look_at{};
+  double fov_deg = 40.0;                   ///< vertical, above 0 and below 180
+  std::optional<std::array<double, 3>> up; ///< absent: the scene's axis
+};
+
+/// Clouds loaded and completed, shapes sampled, all of them in an octree on the device.
+class Prepared {
+public:
+  /// Loads and uploads; the scene may go or change afterwards. What the log hears: where normals and radii come from,
+  /// what was merged, warnings. Throws Error: input, device, memory, interrupted.
+  Prepared(const Context& context, const Scene& scene, const RunControl& run = {});
+
+  /// Number of the points of the octree: those of all clouds and shapes, less those that were dropped or merged.
+  std::size_t size() const;
+  /// [size x 3], world units, within 1e-7 of the scene's size; in the octree's order.
+  std::vector<double> positions() const;
+  /// [size]: the place of each among the kept points of all clouds, then shapes, in the scene's order.
+  std::vector<unsigned> ids() const;
+
+  /// The scene's, or the one that was chosen because the scene has none.
+  Camera camera() const;
+
+  struct Parts; ///< for the library itself
+  const std::shared_ptr<Parts>& parts() const { return parts_; }
+
+private:
+  std::shared_ptr<Parts> parts_;
+};
+
+struct LightOptions {
+  /// Whether photons bring the light that mirrors and glass pass on. They change pictures, and radiosities where the
+  /// scene says caustics.feedback or caustics.indirect.
+  bool photons = true;
+  /// Nothing is solved: films are path traced, slowly and without bias.
+  bool path_tracing = false;
+};
+
+/// The solved light of a prepared scene. It does not depend on a camera: any number of films may be made by it.
+class Light {
+public:
+  /// Throws Error: input where settings of the scene do not go together, device, memory, interrupted.
+  explicit Light(const Prepared& prepared, const LightOptions& options = {}, const RunControl& run = {});
+
+  /// [size x 3, W/m²], RGB, in the order of Prepared::positions(): what leaves the front of each point after emission
+  /// or diffuse reflection of direct light and of light from surfaces; 0 of mirrors and glass.
+  /// Throws Error(device), and Error(usage) for light that was not solved (path_tracing).
+  std::vector<float> radiosity() const;
+
+  /// The points with their normals, radii, radiosity and colours as a PLY file, as `pointgi bake` writes it. `exposure`
+  /// brightens the colours, in stops. Throws as radiosity(), and Error(output).
+  void write_ply(const std::string& file, double exposure = 0.0) const;
+
+  struct Parts; ///< for the library itself
+  const std::shared_ptr<Parts>& parts() const { return parts_; }
+
+private:
+  std::shared_ptr<Parts> parts_;
+};
+
+} // namespace pointgi::api
