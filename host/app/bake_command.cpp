@@ -8,6 +8,7 @@
 #include "host/app/stats.h"
 #include "host/app/view_warnings.h"
 #include "host/cloud/input_file.h"
+#include "host/tune/self_test.h"
 #include <cstdio>
 #include <spdlog/spdlog.h>
 
@@ -33,7 +34,7 @@ ExitCode run_bake(const BakeOptions& options) {
   stages.start("scene");
   Scene scene = checked_scene(options);
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
-  Session session(choose_device(options.device));
+  Session session(choose_tested_device(options.device));
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
   const PreparedScene ready = prepare_scene(session, scene, !is_scene_file(options.input), stages);
   catch_interrupts();

@@ -7,6 +7,7 @@
 #include "host/app/stats.h"
 #include "host/app/view_warnings.h"
 #include "host/cache/binary_cache.h"
+#include "host/tune/self_test.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -151,7 +152,7 @@ ExitCode run_render(const RenderOptions& options) {
   const PixelWindow window = window_of(options, scene.render);
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
 
-  Session session(choose_device(options.device));
+  Session session(choose_tested_device(options.device));
   session.dump_kernels_to(options.dump_folder);
   if (!options.trace_file.empty()) session.record_launches();
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
