@@ -3,6 +3,7 @@
 #include "host/cl/session.h"
 #include "host/error.h"
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -70,6 +71,9 @@ void Session::dump(const std::string& file, const std::string& options, const st
   std::filesystem::create_directories(dump_folder_, ignored);
   std::string name = file;
   std::replace(name.begin(), name.end(), '/', '_');
+  char hash[16]; // of one file there are programs of several options
+  std::snprintf(hash, sizeof hash, "-%08x", static_cast<unsigned>(fnv1a(options) & 0xffffffffu));
+  name.insert(name.rfind('.'), hash);
   std::ofstream out(dump_folder_ + "/" + name);
   out << "/* clBuildProgram options: " << options << " */\n" << source;
   if (!out)

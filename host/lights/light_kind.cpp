@@ -1,5 +1,5 @@
 #include "host/lights/light_kind.h"
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 namespace pointgi {
 

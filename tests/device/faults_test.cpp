@@ -2,10 +2,13 @@
 #include "host/error.h"
 #include "host/passes/build_pools.h"
 #include "host/passes/visibility.h"
+#include "host/radiosity/fmm.h"
 #include "host/tune/variant_list.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
+#include "tests/support/exchange.h"
 #include <catch2/catch.hpp>
+#include <cstring>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -29,6 +32,13 @@ Error error_of(const std::function<void()>& call) {
   }
   FAIL("no error");
   return {ErrorKind::internal, ""};
+}
+
+/// The default device as if it had two compute units, for which launches may be small.
+Device small_device() {
+  Device device = choose_device("");
+  device.info.compute_units = 2;
+  return device;
 }
 
 /// One kernel, ready to be launched.
@@ -81,7 +91,7 @@ TEST_CASE("a program that does not build, and copies that fail, are errors of th
 }
 
 TEST_CASE("segments that are too many for the device's memory are asked in smaller launches", "[faults]") {
-  Session device(choose_device(""));
+  Session device(small_device());
   const TraversalVariant variant = plain_variant(TraversalForm::step);
   const auto splats = mixed_splats();
   const DevicePools pools = upload_pools(device, build_pools(splats, variant), variant.storage);
@@ -105,6 +115,28 @@ TEST_CASE("segments that are too many for the device's memory are asked in small
   CHECK(answers(1000) == answers(segments.size()));
   CHECK_THROWS_WITH(answers(0), Contains("smallest") && Contains("CL_OUT_OF_RESOURCES"));
   device.inject_faults({});
+}
+
+TEST_CASE("radiosity has the same bits where the device refuses large launches", "[faults]") {
+  Session device(small_device());
+  const ClusterTree tree = build_clusters(inside_sphere(5000), {});
+  const auto links = links_without_visibility(tree);
+  const auto b = varied_radiosity(tree.points);
+  const auto irradiance = [&](std::size_t most_items) {
+    std::size_t refused = 0;
+    DeviceFmm fmm(device, tree, links, {});
+    device.inject_faults([&](const DeviceCall& call) {
+      const bool fails = call.kind == Kind::launch && call.work_items > most_items;
+      refused += fails;
+      return fails ? CL_MEM_OBJECT_ALLOCATION_FAILURE : CL_SUCCESS;
+    });
+    std::vector<double> h;
+    fmm.apply(b, Judge::now, h);
+    device.inject_faults({});
+    CHECK((refused > 0) == (most_items < 1'000'000));
+    return h;
+  };
+  CHECK(irradiance(200) == irradiance(1'000'000));
 }
 
 TEST_CASE("a fill takes one value to the device, and leaves the rest of the buffer alone", "[faults]") {

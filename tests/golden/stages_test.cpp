@@ -29,7 +29,8 @@ TEST_CASE("a scene without specular surfaces runs no stage and builds no kernel 
       std::string first;
       std::getline(file, first);
       found.options += first + "\n";
-      found.files.insert(entry.path().filename().string());
+      const std::string stem = entry.path().stem().string(); // "render_shade-1a2b3c4d"
+      found.files.insert(stem.substr(0, stem.rfind('-')));
     }
     for (const auto& [channel, values] : read_exr(out + ".exr").channels)
       found.channels.insert(channel);
@@ -41,7 +42,7 @@ TEST_CASE("a scene without specular surfaces runs no stage and builds no kernel 
     CHECK((reason_of(found.stats["stages"], "photon") == "no specular material") == !there);
     CHECK(found.stats.count("photons") == (there ? 1 : 0));
     CHECK(found.stats["kernels"].count("trace_photons") == (there ? 1 : 0));
-    CHECK(found.files.count("photon_trace_photons.cl") == (there ? 1 : 0));
+    CHECK(found.files.count("photon_trace_photons") == (there ? 1 : 0));
     for (const char* option : {"HAS_SPECULAR", "HAS_CAUSTICS", "GATHER_MOST"})
       CHECK((found.options.find(option) != std::string::npos) == there);
     for (const char* channel : {"Specular.R", "Caustic.R"})
