@@ -212,7 +212,7 @@ TEST_CASE("every scene of the documentation loads") {
       loaded += 1;
     }
   }
-  CHECK(loaded >= 10);
+  CHECK(loaded >= 8); // or the blocks are no longer found
 }
 
 TEST_CASE("the scenes of the gallery load") {
