@@ -120,7 +120,7 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
   }
   stages.start("normals");
   const auto slopes = fit_normal_field(points, [&](const Splat& splat) {
-    return lighting.materials[static_cast<std::size_t>(splat.material)].type != MATERIAL_DIFFUSE;
+    return (lighting.materials[static_cast<std::size_t>(splat.material)].flags & MATERIAL_SPECULAR) != 0;
   });
   std::vector<cl_float4> texels(slopes.size());
   for (std::size_t i = 0; i < slopes.size(); ++i)

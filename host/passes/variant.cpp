@@ -20,12 +20,32 @@ std::string group_options(WorkGroup group) {
   return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
 }
 
+std::string light_options(unsigned lights) {
+  if (lights == 0) return {};
+  std::string options = " -D HAS_DELTA_LIGHTS";
+#define OPTION(ID, name)                                                                                               \
+  options += (lights >> LIGHT_##ID & 1u) != 0 ? " -D WITH_LIGHT_" #ID "=1" : " -D WITH_LIGHT_" #ID "=0";
+  LIGHT_KINDS(OPTION)
+#undef OPTION
+  return options;
+}
+
+std::string material_options(unsigned materials, unsigned flags) {
+  std::string options = " -D HAS_SPECULAR";
+  if ((flags & MATERIAL_TRANSMITS) != 0) options += " -D HAS_TRANSMISSION";
+  if ((flags & MATERIAL_HAS_LOBE) != 0) options += " -D HAS_LOBES";
+#define OPTION(ID, name)                                                                                               \
+  options += (materials >> MATERIAL_##ID & 1u) != 0 ? " -D WITH_" #ID "=1" : " -D WITH_" #ID "=0";
+  MATERIAL_KINDS(OPTION)
+#undef OPTION
+  return options;
+}
+
 std::string feature_options(const SceneFeatures& features) {
-  return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
-         (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
-         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
-         (features.specular ? " -D HAS_SPECULAR" : "") + (features.glass ? " -D HAS_GLASS" : "") +
-         (features.phong ? " -D HAS_PHONG" : "") +
+  return light_options(features.lights) + (features.emitters ? " -D HAS_EMITTERS" : "") +
+         (features.environment ? " -D HAS_ENVIRONMENT" : "") + (features.radiosity ? " -D HAS_RADIOSITY" : "") +
+         (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
+         (features.specular() ? material_options(features.materials, features.material_flags) : "") +
          (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
                                 : "");
 }
@@ -81,7 +101,7 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 
 Program specular_rays_program(const TraversalVariant& variant) {
   return program(variant, "test/specular_rays.cl",
-                 feature_options({false, false, false, false, true, true, true, true}));
+                 feature_options({0, false, false, false, true, all_materials, all_material_flags}));
 }
 
 Program segments_program(const TraversalVariant& variant) {
@@ -93,8 +113,11 @@ Program pairs_program(const TraversalVariant& variant) {
 }
 
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
-  return program(variant, "render/path.cl",
-                 group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));
+  TraversalVariant exact = variant;
+  exact.fast_math = false;
+  return program(exact, "render/shade.cl",
+                 " -D PATH_TRACING" + group_options({}) + feature_options(features) +
+                     (some_paths ? " -D PATH_CLASSES" : ""));
 }
 
 Program fmm_program(const char* file) {

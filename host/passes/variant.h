@@ -27,16 +27,23 @@ std::string name_of(const TraversalVariant& variant);
 
 /// What the scene has, so that kernels are built without what it has not (method.md §7).
 struct SceneFeatures {
-  bool delta_lights = false;
+  unsigned lights = 0; ///< bit LIGHT_<ID> of each kind of [[light]] (shared/light_kinds.h)
   bool emitters = false;
   bool environment = false;
-  bool radiosity = false;  ///< of the picture: points have irradiance from surfaces
-  bool shadow_rays = true; ///< of the picture: direct light comes by them, not with the points' irradiance
-  bool specular = false;   ///< some splats are no diffuse ones: rays go on, normals are a field
-  bool glass = false;      ///< some are glass; specular too then
-  bool phong = false;      ///< some have a Phong lobe; specular too then
-  unsigned gather_k = 0;   ///< of the picture: photons an estimate of caustics; 0: there are none; specular too then
+  bool radiosity = false;      ///< of the picture: points have irradiance from surfaces
+  bool shadow_rays = true;     ///< of the picture: direct light comes by them, not with the points' irradiance
+  unsigned materials = 0;      ///< bit MATERIAL_<ID> of each kind of material (shared/material_kinds.h)
+  unsigned material_flags = 0; ///< what these materials do: MATERIAL_...; kinds count only where one is specular
+  unsigned gather_k = 0;       ///< of the picture: photons an estimate of caustics; 0: there are none
+
+  bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };
+
+/// Every kind of material, or of light.
+constexpr unsigned all_materials = (1u << MATERIAL_KIND_COUNT) - 1u, all_lights = (1u << LIGHT_KIND_COUNT) - 1u;
+/// What some of them do.
+constexpr unsigned all_material_flags =
+    MATERIAL_REFLECTS_DIFFUSELY | MATERIAL_SPECULAR | MATERIAL_HAS_LOBE | MATERIAL_TRANSMITS;
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
 constexpr unsigned image_width_log2 = 12;

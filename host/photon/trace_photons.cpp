@@ -56,23 +56,23 @@ void book(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger
 
 SceneFeatures features_of(const DeviceLighting& lighting) {
   SceneFeatures features;
-  features.specular = true;
-  features.glass = lighting.has_type(MATERIAL_GLASS);
-  features.phong = lighting.has_type(MATERIAL_PHONG);
+  features.lights = lighting.light_types;
+  features.materials = lighting.material_types;
+  features.material_flags = lighting.flags;
   return features;
 }
 
 /// Of the light that a splat receives, on both sides together where it has two, about how much goes on by mirror or
 /// lobe.
 double passed_on(const Material& material) {
-  if (material.type == MATERIAL_DIFFUSE) return 0.0;
-  if (material.type == MATERIAL_GLASS) return 2.0;
+  if ((material.flags & MATERIAL_SPECULAR) == 0) return 0.0;
+  if ((material.flags & MATERIAL_TRANSMITS) != 0) return 2.0;
   return double{*std::max_element(material.specular, material.specular + 3)};
 }
 
 auto is_specular(const DeviceLighting& lighting) {
   return [&lighting](const Splat& s) {
-    return lighting.materials[static_cast<std::size_t>(s.material)].type != MATERIAL_DIFFUSE;
+    return (lighting.materials[static_cast<std::size_t>(s.material)].flags & MATERIAL_SPECULAR) != 0;
   };
 }
 

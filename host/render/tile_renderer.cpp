@@ -13,12 +13,11 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
       irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field), photons_(photons) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
   const bool asks_lights = paths || shadow_rays; // without, splats that shine are still seen, and so is the sky
-  SceneFeatures features{asks_lights && !lighting.delta.empty(), !lighting.emitters.empty(),
+  SceneFeatures features{asks_lights ? lighting.light_types : 0u, !lighting.emitters.empty(),
                          asks_lights && lighting.has_environment, irradiance_ != nullptr, asks_lights};
   if (normal_field_ != nullptr) {
-    features.specular = true;
-    features.glass = lighting.has_type(MATERIAL_GLASS);
-    features.phong = lighting.has_type(MATERIAL_PHONG);
+    features.materials = lighting.material_types;
+    features.material_flags = lighting.flags;
     features.gather_k = photons_ != nullptr ? photons_->k : 0;
   }
   if (paths) {

@@ -47,6 +47,7 @@ inline constexpr NumberRange reflectance{0.0, 1.0, false, false, "from 0 to 1 (a
 inline constexpr NumberRange light{0.0, 1e30, false, false, "from 0 to 1e30 (light cannot be negative)"};
 inline constexpr NumberRange absorption{0.0, 1e18, false, false, "from 0 to 1e18"};
 inline constexpr NumberRange ior{0.0, 1e6, true, false, "> 0 and at most 1e6"};
+inline constexpr NumberRange roughness{0.0, 1.0, false, false, "from 0 (smooth) to 1"};
 inline constexpr NumberRange exponent{0.0, 1e6, false, false, "from 0 to 1e6"};
 inline constexpr NumberRange tolerance{0.0, 1.0, true, true, "> 0 and < 1"};
 inline constexpr NumberRange epsilon = tolerance;

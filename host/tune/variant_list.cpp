@@ -151,10 +151,10 @@ std::vector<ProgramUse> all_programs() {
     uses[at->second].cpu |= cpu;
     uses[at->second].gpu |= gpu;
   };
-  const SceneFeatures diffuse{true, true, true, true}, without_shadow_rays{false, true, false, true, false};
-  const SceneFeatures everything{true, true, true, true, true, true, true, true};
-  const SceneFeatures traced{true, true, true, false, true, true, true, true}; // by paths
-  const SceneFeatures lit{false, false, false, false, true, true, true, true}; // by photons
+  const SceneFeatures diffuse{all_lights, true, true, true}, without_shadow_rays{0, true, false, true, false};
+  const SceneFeatures everything{all_lights, true, true, true, true, all_materials, all_material_flags};
+  const SceneFeatures traced{all_lights, true, true, false, true, all_materials, all_material_flags}; // by paths
+  const SceneFeatures lit{all_lights, false, false, false, true, all_materials, all_material_flags};  // by photons
   for (const TraversalVariant& v : variants) {
     const bool cpu = why_not(v, ideal_device(true)).empty(), gpu = why_not(v, ideal_device(false)).empty();
     const bool usual_walk = build_options(v) == build_options(plain_variant(v.form)) && !v.fast_math;
@@ -163,7 +163,7 @@ std::vector<ProgramUse> all_programs() {
     add(eye_rays_program(v), cpu, gpu);
     if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
     if (usual_group) add(shade_program(v, {}), cpu, gpu);
-    add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
+    add(direct_irradiance_program(v, {all_lights, true, true}), cpu, gpu);
     add(specular_rays_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
@@ -178,7 +178,7 @@ std::vector<ProgramUse> all_programs() {
       caustics.gather_k = k;
       add(shade_program(v, caustics), cpu, false);
     }
-    add(path_program(v, {true, true, true}, true), cpu, gpu);
+    add(path_program(v, {all_lights, true, true}, true), cpu, gpu);
     add(trace_photons_program(v, lit, PhotonStart::equal_power), cpu, gpu);
     add(trace_photons_program(v, lit, PhotonStart::from_surfaces), cpu, gpu);
   }

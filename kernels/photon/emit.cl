@@ -98,16 +98,17 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
 #endif
   const __global PhotonLeaf* leaf = from.leaves + aim->leaf;
   const float4 u = random4(id, DIMENSION_ORIGIN);
-  const bool is_delta = aim->source < AIM_ENVIRONMENT;
-  const __global DeltaLight* light = from.lights.delta + (is_delta ? aim->source : 0u);
   bool parallel = aim->source == AIM_ENVIRONMENT;
   float3 colour = (float3)(0.0f), origin = (float3)(0.0f), towards = (float3)(0.0f, 0.0f, 1.0f);
   float solid_angle = 1.0f;
-  if (is_delta) {
-    colour = load3(light->strength);
-    parallel = light->type == LIGHT_DIRECTIONAL;
-    origin = load3(light->vector);
+  if (aim->source < AIM_ENVIRONMENT) {
+#ifdef HAS_DELTA_LIGHTS
+    const PhotonOrigin of_light = emit_from_light(from.lights.delta + aim->source, u.xy);
+    colour = of_light.strength;
+    parallel = of_light.parallel;
+    origin = of_light.vector;
     towards = origin;
+#endif
   } else if (aim->source == AIM_EMITTERS) {
     origin = emitter_point(POOL_ARGS, from, u, &e);
     colour = e.power;

@@ -4,14 +4,24 @@
  * the image's (first_x + i, first_y + j), is shaded from hits[j * columns + i] into film[(j * columns + i) *
  * FILM_STRIDE ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel has, and adds to the film
  * unless first_sample is 0; of fewer the rest of the group rests. Results do not depend on how an image is cut into
- * launches. */
-#include "render/eye_sample.cl"
+ * launches.
+ *   PATH_TRACING  the kernel is path_pixels, the picture by path tracing (kernels/render/path_sample.cl); with the paths LE
+ *                 and LDE alone that picture is bit-identical to shade_pixels'. A work-item follows its path to the end:
+ *                 paths of a group end at different bounces, which CPU devices do not mind */
+#ifdef PATH_TRACING
+#include "render/specular_path_sample.cl"
+#define SHADE_PIXELS path_pixels
+#define ADD_SAMPLE add_path
+#else
 #include "render/specular_sample.cl"
+#define SHADE_PIXELS shade_pixels
+#define ADD_SAMPLE add_sample
+#endif
 #include "render/film.cl"
 #include "render/group.cl"
 
 __kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
-void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
+void SHADE_PIXELS(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
                   const __global DeltaLight* delta_lights, const __global Emitter* emitters,
                   const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint columns, uint rows,
                   uint first_sample) {
@@ -30,7 +40,7 @@ void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global M
     float t_start;
     sample_ray(params, id, &ray, &t_start);
     const Hit hit = {hits[at].t[item.lane], hits[at].splat[item.lane]};
-    point = add_sample(POOL_ARGS, lights, id, ray, t_start, hit, sums);
+    point = ADD_SAMPLE(POOL_ARGS, lights, id, ray, t_start, hit, sums);
   }
   keep_sample(sums, point, item.lane, samples_of + item.pixel);
   barrier(CLK_LOCAL_MEM_FENCE);

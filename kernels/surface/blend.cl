@@ -24,9 +24,7 @@ typedef struct Surface {
   uint splat;    /* the disc hit first */
   uint material; /* its material */
   bool front;    /* the ray met the front side */
-#ifdef HAS_PHONG
-  float3 mirrored;  /* where the ray would go on, were the surface a mirror */
-  float exponent;   /* of the lobe about that */
+#ifdef HAS_LOBES
   float3 highlight; /* see direct_irradiance */
 #endif
 } Surface;

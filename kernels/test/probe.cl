@@ -1,4 +1,7 @@
 /* Probes: what the device itself makes of shared structs and small functions. For tests. */
+#define WITH_PHONG 1
+#define WITH_CONDUCTOR 1
+#include "materials/conductor.cl"
 #include "materials/media.cl"
 #include "traverse/octree_descent.cl"
 #include "materials/phong.cl"
