@@ -20,7 +20,7 @@ Scene checked_scene(const BakeOptions& options) {
   if (!has_extension(options.output, ".ply"))
     throw Error(ErrorKind::output, options.output + ": a lit cloud is written as .ply; choose such a name");
   Scene scene = load_any(options.input, overrides_of(options));
-  apply_quality(options.quality, scene);
+  apply_bake_quality(options.quality, scene);
   require_possible_radiosity(scene);
   require_outputs(options.input, scene, {{"-o", options.output}, {"--stats", options.stats_file}});
   return scene;

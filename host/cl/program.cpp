@@ -50,6 +50,7 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
   }
   cl::Program program;
   try {
+    ask_faults({DeviceCall::Kind::build, file, 0, 0});
     program = cl::Program(context_, source);
     program.build(devices, all_options.c_str());
   } catch (const cl::Error& error) {

@@ -113,11 +113,8 @@ Program pairs_program(const TraversalVariant& variant) {
 }
 
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
-  TraversalVariant exact = variant;
-  exact.fast_math = false;
-  return program(exact, "render/shade.cl",
-                 " -D PATH_TRACING" + group_options({}) + feature_options(features) +
-                     (some_paths ? " -D PATH_CLASSES" : ""));
+  return program(variant, "render/path.cl",
+                 group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));
 }
 
 Program fmm_program(const char* file) {

@@ -1,4 +1,5 @@
 #include "host/photon/trace_photons.h"
+#include "host/cl/batches.h"
 #include "host/passes/visibility.h"
 #include "host/photon/diffuse_photons.h"
 #include "host/photon/kept_photons.h"
@@ -8,9 +9,8 @@ namespace pointgi {
 
 namespace {
 
-/// A launch aims at this many seconds, as the render stage's do.
-constexpr double launch_seconds = 0.1;
-constexpr std::size_t first_batch = 1u << 12, fewest = 1u << 8, most_at_once = 1u << 18, group = 64;
+/// Photons of the first launch, of which nothing is known yet, and of any: 16 MiB of flights.
+constexpr std::size_t first_batch = 1u << 12, most_at_once = 1u << 18, group = 64;
 
 void add(const float power[3], std::array<double, 3>& to) {
   for (std::size_t c = 0; c < 3; ++c)
@@ -111,16 +111,15 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   const auto splats = session.upload(request.leaves.splats);
   const auto leaf_of = session.upload(request.leaves.leaf_of);
   const std::size_t photons = request.plan.photons;
-  std::size_t batch = std::min(photons, request.batch > 0 ? request.batch : first_batch);
-  const std::size_t room = std::min(photons, request.batch > 0 ? request.batch : most_at_once);
-  const auto flights = session.allocate<PhotonFlight>(room);
+  Pace pace = request.batch > 0 ? Pace(static_cast<double>(request.batch), request.batch, request.batch)
+                                : Pace(first_batch, busy_work_items(session.info()), most_at_once);
+  Buffer<PhotonFlight> flights;
   KeptPhotons kept(control.most_stored, request.lighting.params.seed);
-  for (std::size_t first = 0; first < photons;) {
-    if (control.stop()) {
-      traced.stopped = true;
-      return traced;
+  const auto launch = [&](std::size_t first, std::size_t count) {
+    if (flights.size < count) {
+      flights = {};
+      flights = session.allocate<PhotonFlight>(count);
     }
-    const std::size_t count = std::min(batch, photons - first);
     const double seconds = session.launch(
         kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points, request.normal_field,
         device_params, materials, delta, emitters, radiance, aims, leaves, splats, leaf_of, flights,
@@ -129,11 +128,11 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
     auto number = static_cast<std::uint32_t>(first);
     for (const PhotonFlight& flight : session.download(flights, count))
       book(flight, number++, traced.ledger, kept);
-    first += count;
-    if (control.progress) control.progress(static_cast<double>(first) / static_cast<double>(photons));
-    if (request.batch > 0) continue;
-    if (seconds < 0.5 * launch_seconds && count == batch) batch = std::min(2 * batch, room);
-    if (seconds > 2.0 * launch_seconds) batch = std::max(batch / 2, fewest);
+    return seconds;
+  };
+  if (for_each_batch(EqualItems{photons}, pace, {control.stop, control.progress}, launch) < photons) {
+    traced.stopped = true;
+    return traced;
   }
   traced.one_of = kept.one_of();
   traced.stored = kept.take();

@@ -36,10 +36,9 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
 
 TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint first_sample) {
   const auto width = static_cast<std::size_t>(columns), height = static_cast<std::size_t>(rows);
-  if (film_.size < width * height * film_channels()) {
-    film_ = session_.allocate<float>(width * height * film_channels());
-    hits_ = session_.allocate<EyeHits>(width * height);
-  }
+  // Each on its own: where the second is refused, the first may be larger than a smaller tile needs.
+  if (film_.size < width * height * film_channels()) film_ = session_.allocate<float>(width * height * film_channels());
+  if (hits_.size < width * height) hits_ = session_.allocate<EyeHits>(width * height);
   const auto parts = [](std::size_t whole, std::size_t size) { return (whole + size - 1) / size; };
   const auto pixels = [&](WorkGroup g) {
     return LaunchShape::grid(parts(width, g.size() / GRID_RAYS) * g.x, height * g.y, g.x, g.y);

@@ -134,7 +134,8 @@ struct RadiositySettings {
   double tolerance = 1e-3;
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
-  std::optional<SourcePlace> place;         ///< set when the file has the section
+  std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs
+  std::optional<SourcePlace> place; ///< set when the file has the section
 };
 struct CausticSettings {
   long long photons = 400000;

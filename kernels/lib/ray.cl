@@ -71,18 +71,20 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float ste
 
 /* normal.w: the disc's material. A ray that goes off into glass passes by the discs whose fronts it meets near there, and
  * arrives at backs: all that was said of sides is turned round. What is coincident and faces the other way, the far side of
- * a sheet or the floor that glass stands on, does not stop a ray that is thrown back; one that came through must meet it. */
+ * a sheet or the floor that glass stands on, does not stop a ray that is thrown back; one that came through must meet it.
+ * Of another material that continues the surface in its plane, discs stick over the edge: a ray that is thrown back does
+ * not meet their far sides. */
 static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float4 normal) {
   float along = dot3(normal.xyz, direction);
 #ifdef HAS_SPECULAR
   if (ends.origin_material != 0u) {
+    along = ends.origin_back != 0u ? -along : along;
     if (dot3(normal.xyz, ends.origin_normal) < 0.0f) {
       if (ends.origin_through != 0u)
         return false;
     } else if ((uint)normal.w + 1u != ends.origin_material) {
-      return false;
+      return ends.origin_through == 0u && along > 0.0f && t < COINCIDENT;
     }
-    along = ends.origin_back != 0u ? -along : along;
   }
 #endif
   return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,

@@ -14,19 +14,6 @@ typedef struct LightSample {
 #endif
 } LightSample;
 
-/* Index of the first entry whose cumulative share exceeds u, for entries `stride` floats apart. */
-static inline uint pick(const __global float* cumulative, uint stride, uint count, float u) {
-  uint low = 0u, high = count - 1u;
-  while (low < high) {
-    const uint middle = (low + high) / 2u;
-    if (cumulative[middle * stride] > u)
-      high = middle;
-    else
-      low = middle + 1u;
-  }
-  return low;
-}
-
 /* Where photons of a light set out. */
 typedef struct PhotonOrigin {
   float3 vector;   /* the place, or of parallel light the unit vector towards the light */

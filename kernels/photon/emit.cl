@@ -36,17 +36,6 @@ static inline float2 stratified2(const __global PhotonAim* aim, uint number, Sam
   return (float2)(fmin(u, 0.99999994f), unit_float(reversed + turn));
 }
 
-/* A direction of a cone about `axis`, unit, of sine^2 s2 of its half angle, or any direction where s2 >= 1; density 1 over
- * *solid_angle. */
-static inline float3 cone_direction(float3 axis, float s2, float2 u, float* solid_angle) {
-  const float height = s2 >= 1.0f ? 2.0f : s2 / (1.0f + sqrt(1.0f - s2)); /* 1 - cosine of the half angle */
-  *solid_angle = 6.2831853f * height;
-  const float down = u.x * height, r = sqrt(fmax(0.0f, down * (2.0f - down))), phi = 6.2831853f * u.y;
-  float3 a, b;
-  tangents(axis, &a, &b);
-  return normalize3((1.0f - down) * axis + r * cos(phi) * a + r * sin(phi) * b);
-}
-
 /* A point of the disc about the origin across `axis`. */
 static inline float3 disc_point(float3 axis, float radius, float u, float v) {
   float3 a, b;

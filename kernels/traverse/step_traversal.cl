@@ -171,7 +171,7 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
       float q;
       const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
       if (t >= t_from && t < walk.t_exit && t >= blend->t_first && t < blend->t_end && i != blend->splat)
-        blend_add(POOL_ARGS, blend, ray, i, t, q, normal.xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+        blend_add(POOL_ARGS, blend, ray, i, t, q, normal, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
     })
     t_from = walk.t_exit;
   } while (walk.t_exit < blend->t_end && walk_next(POOL_ARGS, &walk));

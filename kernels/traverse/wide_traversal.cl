@@ -290,7 +290,7 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
         for (uint lane = 0u; lane < WIDE_LANES; ++lane)
           if (t_of[lane] > -INFINITY) {
             const uint i = h.first + lane;
-            blend_add(POOL_ARGS, blend, ray, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u).xyz,
+            blend_add(POOL_ARGS, blend, ray, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u),
                       pool_point_texel(POINT_TEXELS * i + 2u).xyz);
           }
       }
