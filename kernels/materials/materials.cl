@@ -12,7 +12,7 @@
 #ifdef HAS_SPECULAR
 
 /* Rays off a surface start a little behind it (kernels/lights/lights.cl). */
-#define SCATTER_T_MIN -4e-6f
+#define SCATTER_T_MIN(radius) (-SEGMENT_MARGIN(radius))
 
 /* A normal never lies flatter than this to the ray that meets it: near a silhouette the smooth normal may face away from a
  * ray that has met the disc's front. */
@@ -105,7 +105,7 @@ static inline Ray scattered_ray(const Surface* s, const Scatter* scatter, float 
   Ray ray;
   ray.origin = s->position;
   ray.direction = scatter->direction;
-  ray.t_min = SCATTER_T_MIN;
+  ray.t_min = SCATTER_T_MIN(s->radius);
   ray.t_max = INFINITY;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;

@@ -33,7 +33,7 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float ste
                                   float3 normal) {
   const float cosine = dot3(normal, end_normal);
   return (steepness * distance < SELF_HIT_REACH * (end_radius + radius) && cosine > SELF_HIT_COSINE) ||
-         (distance < COINCIDENT && cosine < -SELF_HIT_COSINE);
+         (distance < COINCIDENT(end_radius + radius) && cosine < -SELF_HIT_COSINE);
 }
 
 /* Of a ray that carries light from surface to surface, a disc near its origin is met when the ray arrives at its front:
@@ -55,7 +55,7 @@ static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t,
       if (ends.origin_through != 0u)
         return false;
     } else if ((uint)normal.w + 1u != ends.origin_material) {
-      return ends.origin_through == 0u && along > 0.0f && t < COINCIDENT;
+      return ends.origin_through == 0u && along > 0.0f && t < COINCIDENT(ends.origin_radius + radius);
     }
   }
 #endif

@@ -8,8 +8,10 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float st
                                    const BlockHits* h) {
   const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
                              fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
+  /* COINCIDENT in lanes */
+  const lanes_f coincident = clamp(0.01f * (end_radius + h->radius), ROUNDING_OF_HITS, MOST_COINCIDENT);
   return ((steepness * distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
-         ((distance < COINCIDENT) & (cosine < -SELF_HIT_COSINE));
+         ((distance < coincident) & (cosine < -SELF_HIT_COSINE));
 }
 
 #ifndef HAS_SPECULAR

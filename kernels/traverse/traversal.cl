@@ -46,7 +46,7 @@ static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, flo
   ends.origin_back = dot3(normal.xyz, ray.direction) < 0.0f ? 1u : 0u;
   ends.origin_through = 1u;
   ray.origin = fma((float3)(hit.t), ray.direction, ray.origin);
-  ray.t_min = -SEGMENT_MARGIN;
+  ray.t_min = -SEGMENT_MARGIN(ends.origin_radius);
   ray.t_max = reach;
   Hit behind = trace_closest_from(POOL_ARGS, ray, ends);
   behind.t += hit.t;
@@ -62,7 +62,7 @@ static inline bool is_of_medium(POOL_PARAMS, ShadowEnds ends, uint splat) {
 static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
   if (ends.medium == 0u || hit.splat == NO_SPLAT || is_of_medium(POOL_ARGS, ends, hit.splat))
     return hit;
-  const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN);
+  const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN(pool_point_texel(POINT_TEXELS * hit.splat).w));
   return behind.splat != NO_SPLAT && is_of_medium(POOL_ARGS, ends, behind.splat) ? behind : hit;
 }
 #endif
