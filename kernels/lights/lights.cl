@@ -32,14 +32,14 @@ static inline Viewed viewed_by(float3 direction, float specular_probability) {
 
 /* Rays off a surface start a little behind it: where two walls meet, rounding may put the point a few float steps beyond
  * the other wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
-#define BEHIND_SURFACE -4e-6f
+#define BEHIND_SURFACE(radius) (-SEGMENT_MARGIN(radius))
 
 /* Whether nothing stands between the surface and the light; counts its ray. */
 static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* light, float step_delta, float* rays) {
   Ray ray;
   ray.origin = s->position;
   ray.direction = light->towards;
-  ray.t_min = BEHIND_SURFACE;
+  ray.t_min = BEHIND_SURFACE(s->radius);
   ray.t_max = light->distance;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;

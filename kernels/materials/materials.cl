@@ -17,7 +17,7 @@ static inline bool has_flag(const __global Material* material, uint flag) { retu
 #ifdef HAS_SPECULAR
 
 /* Rays off a surface start a little behind it (kernels/lights/lights.cl). */
-#define SCATTER_T_MIN -4e-6f
+#define SCATTER_T_MIN(radius) (-SEGMENT_MARGIN(radius))
 
 /* What glass the ray was in on its way to the surface; see kernels/materials/media.cl. */
 static inline Media media_before(Media media, const Surface* s, const __global Material* materials) {
@@ -78,7 +78,7 @@ static inline Ray scattered_ray(const Surface* s, const Scatter* scatter, float 
   Ray ray;
   ray.origin = s->position;
   ray.direction = scatter->direction;
-  ray.t_min = SCATTER_T_MIN;
+  ray.t_min = SCATTER_T_MIN(s->radius);
   ray.t_max = INFINITY;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;

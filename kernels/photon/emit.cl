@@ -101,7 +101,7 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
   } else if (aim->source == AIM_EMITTERS) {
     origin = emitter_point(POOL_ARGS, from, u, &e);
     colour = e.power;
-    e.ray.t_min = BEHIND_SURFACE;
+    e.ray.t_min = BEHIND_SURFACE(e.ends.origin_radius);
   } else {
     colour = load3_constant(from.lights.params->environment);
     towards = cone_direction(towards, 1.0f, u.xy, &solid_angle);

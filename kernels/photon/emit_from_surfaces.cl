@@ -21,7 +21,7 @@ static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __gl
   Emission e;
   e.ray.origin = centre.xyz + disc_point(normal.xyz, sqrt(area * 0.31830989f), u.x, u.y);
   e.ray.direction = cosine_direction(inside ? -normal.xyz : normal.xyz, v.y, u.z);
-  e.ray.t_min = BEHIND_SURFACE;
+  e.ray.t_min = BEHIND_SURFACE(centre.w);
   e.ray.t_max = INFINITY;
 #ifdef STEP_ABSOLUTE
   e.ray.step_delta = from.lights.params->step_delta;

@@ -36,7 +36,7 @@ static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
   Ray ray;
   ray.origin = s->position;
   ray.direction = cosine_direction(s->normal, u.x, u.y);
-  ray.t_min = BEHIND_SURFACE;
+  ray.t_min = BEHIND_SURFACE(s->radius);
   ray.t_max = INFINITY;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
