@@ -32,6 +32,16 @@ std::string feature_options(const SceneFeatures& features) {
 
 } // namespace
 
+SceneFeatures features_on(const DeviceInfo& device, const SceneFeatures& of_scene) {
+  SceneFeatures f = of_scene;
+  if (device.is_cpu) return f;
+  if (f.specular) f.glass = f.phong = true;
+  const bool lit = f.delta_lights || f.emitters || f.environment || f.radiosity;
+  if (lit) f.emitters = true;
+  if (lit && f.shadow_rays) f.delta_lights = f.environment = true;
+  return f;
+}
+
 unsigned gather_room(unsigned k) {
   return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
 }

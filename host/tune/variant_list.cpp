@@ -127,6 +127,26 @@ DeviceInfo ideal_device(bool cpu) {
   return info;
 }
 
+namespace {
+
+/// What features_on() makes of any scene's picture where the device is no CPU.
+std::vector<SceneFeatures> gpu_picture_features() {
+  std::vector<SceneFeatures> sets{{}, {false, false, false, false, true, true, true, true}};
+  for (const SceneFeatures& light : {SceneFeatures{true, true, true, false}, SceneFeatures{true, true, true, true},
+                                     SceneFeatures{false, true, false, true, false}}) {
+    sets.push_back(light);
+    SceneFeatures specular = light;
+    specular.specular = specular.glass = specular.phong = true;
+    for (const unsigned k : {0u, 64u, 512u, 1024u}) {
+      specular.gather_k = k;
+      sets.push_back(specular);
+    }
+  }
+  return sets;
+}
+
+} // namespace
+
 std::vector<ProgramUse> all_programs() {
   std::vector<TraversalVariant> variants = all_variants();
   for (TraversalVariant v : all_variants())
@@ -135,15 +155,13 @@ std::vector<ProgramUse> all_programs() {
       variants.push_back(v);
     }
   std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true}};
-  // Not for GPUs yet: their vectors of 8 lanes in arrays are more than a stack frame should be.
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl"})
-    uses.push_back({fmm_program(file), true, false});
-  // Nor gathering of photons, whose candidates stand in private memory.
+    uses.push_back({fmm_program(file), true, true});
   for (const unsigned k : {64u, 512u, 1024u})
     for (const Program& program :
          {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})
-      uses.push_back({program, true, false});
+      uses.push_back({program, true, true});
   std::map<std::string, std::size_t> known;
   const auto add = [&](const Program& program, bool cpu, bool gpu) {
     const auto [at, is_new] = known.emplace(program.file + "\n" + program.options, uses.size());
@@ -151,7 +169,6 @@ std::vector<ProgramUse> all_programs() {
     uses[at->second].cpu |= cpu;
     uses[at->second].gpu |= gpu;
   };
-  const SceneFeatures diffuse{true, true, true, true}, without_shadow_rays{false, true, false, true, false};
   const SceneFeatures everything{true, true, true, true, true, true, true, true};
   const SceneFeatures traced{true, true, true, false, true, true, true, true}; // by paths
   const SceneFeatures lit{false, false, false, false, true, true, true, true}; // by photons
@@ -164,6 +181,7 @@ std::vector<ProgramUse> all_programs() {
     if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
     if (usual_group) add(shade_program(v, {}), cpu, gpu);
     add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
+    if (usual_walk) add(direct_irradiance_program(v, {true, false, true}), cpu, gpu);
     add(specular_rays_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
@@ -171,14 +189,11 @@ std::vector<ProgramUse> all_programs() {
     add(trace_photons_program(v, lit, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);
     if (!usual_walk || !usual_group) continue;
-    add(shade_program(v, diffuse), cpu, gpu);
-    add(shade_program(v, without_shadow_rays), cpu, gpu);
-    SceneFeatures caustics = everything;
-    for (const unsigned k : {64u, 512u, 1024u}) {
-      caustics.gather_k = k;
-      add(shade_program(v, caustics), cpu, false);
-    }
-    add(path_program(v, {true, true, true}, true), cpu, gpu);
+    for (const SceneFeatures& features : gpu_picture_features())
+      add(shade_program(v, features), cpu, gpu);
+    for (const bool some_paths : {false, true})
+      for (const bool specular : {false, true})
+        add(path_program(v, {true, true, true, false, true, specular, specular, specular}, some_paths), cpu, gpu);
     add(trace_photons_program(v, lit, PhotonStart::equal_power), cpu, gpu);
     add(trace_photons_program(v, lit, PhotonStart::from_surfaces), cpu, gpu);
   }

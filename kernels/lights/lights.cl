@@ -1,5 +1,5 @@
 /* Light that reaches a surface straight from its source, by shadow rays.
- *   HAS_DELTA_LIGHTS, HAS_EMITTERS, HAS_ENVIRONMENT  defined only where the scene has such lights */
+ *   HAS_DELTA_LIGHTS, HAS_EMITTERS, HAS_ENVIRONMENT  where the scene may have such lights; on CPU devices only where it has */
 #include "materials/phong.cl"
 #include "lib/sampling.cl"
 #include "traverse/traversal.cl"
@@ -138,10 +138,11 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
   delta_samples = lights.params->delta_lights <= ALL_DELTA_LIGHTS ? lights.params->delta_lights : 1u;
 #endif
 #ifdef HAS_EMITTERS
-  emitter_samples = 1u;
+  emitter_samples = lights.params->emitters > 0u ? 1u : 0u;
 #endif
 #ifdef HAS_ENVIRONMENT
-  environment_samples = 1u;
+  const float3 sky = load3_constant(lights.params->environment);
+  environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? 1u : 0u;
 #endif
   for (uint i = 0u; i < delta_samples + emitter_samples + environment_samples; ++i) {
     const float4 u = stratified4(id, i < delta_samples ? 1u : i < delta_samples + emitter_samples ? 2u : 3u);
