@@ -30,6 +30,15 @@ const cl::Program& Session::program(const std::string& file, const std::string& 
   return found != programs_.end() ? found->second : programs_.emplace(name, build(file, options)).first->second;
 }
 
+std::vector<std::pair<std::string, std::string>> Session::programs_asked() const {
+  std::vector<std::pair<std::string, std::string>> asked;
+  for (const auto& [name, program] : programs_) {
+    const std::size_t end = name.find('\n');
+    asked.emplace_back(name.substr(0, end), name.substr(end + 1));
+  }
+  return asked;
+}
+
 cl::Program Session::build(const std::string& file, const std::string& options) {
   const char* more = std::getenv("POINTGI_CL_OPTIONS"); // for people who debug kernels: -cl-opt-disable, -g
   const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options) +

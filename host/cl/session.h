@@ -126,6 +126,8 @@ public:
   void record_launches() { recording_ = true; }
   void label_launches(const std::string& label) { label_ = label; }
   const std::vector<LaunchRecord>& launches() const { return launches_; }
+  /// Every program that was asked for: file and options.
+  std::vector<std::pair<std::string, std::string>> programs_asked() const;
   std::size_t programs_compiled() const { return compiled_; }
   std::size_t programs_from_cache() const { return from_cache_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }

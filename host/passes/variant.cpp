@@ -52,6 +52,17 @@ std::string feature_options(const SceneFeatures& features) {
 
 } // namespace
 
+SceneFeatures features_on(const DeviceInfo& device, const SceneFeatures& of_scene) {
+  SceneFeatures f = of_scene;
+  if (device.is_cpu) return f;
+  f.materials = f.specular() ? all_materials : 0u;
+  f.material_flags = f.specular() ? all_material_flags : 0u;
+  const bool lit = f.lights != 0 || f.emitters || f.environment || f.radiosity;
+  if (lit) f.emitters = true;
+  if (lit && f.shadow_rays) f.lights = all_lights, f.environment = true;
+  return f;
+}
+
 unsigned gather_room(unsigned k) {
   return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
 }

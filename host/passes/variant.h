@@ -1,5 +1,6 @@
 #pragma once
 /// The choices that make a kernel variant, and the one place where -D options are composed.
+#include "host/cl/device.h"
 #include "host/scene/scene.h"
 #include <string>
 
@@ -44,6 +45,10 @@ constexpr unsigned all_materials = (1u << MATERIAL_KIND_COUNT) - 1u, all_lights 
 /// What some of them do.
 constexpr unsigned all_material_flags =
     MATERIAL_REFLECTS_DIFFUSELY | MATERIAL_SPECULAR | MATERIAL_HAS_LOBE | MATERIAL_TRANSMITS;
+/// The features that programs of this device are built with. CPU devices: those of the scene, and no more. Others: one
+/// of few sets that hold them (all lights, all specular materials), so that every program which a scene may ask for can
+/// be listed (host/tune/variant_list.h), checked and compiled before; what a scene lacks costs such a program a test.
+SceneFeatures features_on(const DeviceInfo& device, const SceneFeatures& of_scene);
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
 constexpr unsigned image_width_log2 = 12;

@@ -93,7 +93,8 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
                             const FlightControl& control) {
   TracedPhotons traced;
   if (request.plan.photons == 0) return traced;
-  const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.start);
+  const Program program =
+      trace_photons_program(request.variant, features_on(session.info(), features_of(request.lighting)), request.start);
   cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
   RenderParams params = request.lighting.params;
   params.seed += request.flight * 0x9e3779b9u;

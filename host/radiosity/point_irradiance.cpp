@@ -13,8 +13,8 @@ constexpr std::size_t first_points = 256, group = 64;
 Buffer<float> direct_irradiance_of_points(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                           const DeviceLighting& lighting, double side, std::size_t points,
                                           unsigned samples, bool with_emitters, const std::function<bool()>& stop) {
-  const SceneFeatures features{lighting.light_types, with_emitters && !lighting.emitters.empty(),
-                               lighting.has_environment};
+  SceneFeatures features{lighting.light_types, with_emitters && !lighting.emitters.empty(), lighting.has_environment};
+  if (!session.info().is_cpu) features = {all_lights, with_emitters, true}; // one of two programs: features_on()
   const Program program = direct_irradiance_program(variant, features);
   cl::Kernel kernel = session.kernel(program.file, program.options, "direct_irradiance_of_points");
   RenderParams params = lighting.params;

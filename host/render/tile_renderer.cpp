@@ -24,6 +24,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
     std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
     params_.most_bounces = paths->most_bounces;
   }
+  features = features_on(session.info(), features);
   const Program eye_rays = eye_rays_program(variant),
                 shade = paths ? path_program(variant, features, !paths->all) : shade_program(variant, features);
   eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");

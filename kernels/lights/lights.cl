@@ -1,8 +1,9 @@
 /* Light that reaches a surface straight from its source, by shadow rays: the kinds of light that are compiled in.
  *   HAS_DELTA_LIGHTS  the scene has a [[light]]
  *   WITH_LIGHT_<ID>   of each kind of shared/light_kinds.h, where HAS_DELTA_LIGHTS: 1 where the scene has it, else 0
- *   HAS_EMITTERS      some splats shine
- *   HAS_ENVIRONMENT   the environment shines */
+ *   HAS_EMITTERS      some splats may shine
+ *   HAS_ENVIRONMENT   the environment may shine
+ * On CPU devices these stand only where the scene has such lights; other devices have few programs for all scenes. */
 #include "lights/directional.cl"
 #include "lights/emitter.cl"
 #include "lights/point.cl"
@@ -111,10 +112,11 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
   delta_samples = lights.params->delta_lights <= ALL_DELTA_LIGHTS ? lights.params->delta_lights : 1u;
 #endif
 #ifdef HAS_EMITTERS
-  emitter_samples = 1u;
+  emitter_samples = lights.params->emitters > 0u ? 1u : 0u;
 #endif
 #ifdef HAS_ENVIRONMENT
-  environment_samples = 1u;
+  const float3 sky = load3_constant(lights.params->environment);
+  environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? 1u : 0u;
 #endif
   for (uint i = 0u; i < delta_samples + emitter_samples + environment_samples; ++i) {
     const float4 u = stratified4(id, i < delta_samples ? 1u : i < delta_samples + emitter_samples ? 2u : 3u);
@@ -125,7 +127,7 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
       faces = sample_delta_light(s, lights, u, i, &light);
 #endif
 #ifdef HAS_EMITTERS
-    if (i == delta_samples)
+    if (i >= delta_samples && i < delta_samples + emitter_samples)
       faces = sample_emitter(POOL_ARGS, s, lights.materials, lights.emitters, lights.params->emitters, u, &light);
 #endif
 #ifdef HAS_ENVIRONMENT

@@ -11,8 +11,8 @@
 /* Nodes of a grid and points of a leaf go in blocks of this many; grids are padded to it. */
 #define FMM_LANES 8
 
-/* Where a plane begins among planes of `stride` numbers each: nine planes of a large scene's nodes, or seven of its points,
- * are more than 32 bits count. */
+/* Where a plane begins among planes of `stride` numbers each: nine planes of a large scene's nodes, or seven of its
+ * points, are more than 32 bits count. */
 #define FMM_PLANE(number, stride) ((pg_ulong)(number) * (stride))
 
 /* A source nearer than sqrt(FMM_CLOSE x its area), about four spacings, is taken as four quarters of its disc; farther
