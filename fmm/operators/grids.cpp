@@ -2,6 +2,7 @@
 #include "fmm/operators/chebyshev.h"
 #include "octree/parallel.h"
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -64,6 +65,14 @@ void place_nodes(const Grid& grid, std::uint32_t padded, std::vector<double>* po
 
 } // namespace
 
+std::uint32_t node_behind(std::uint32_t first, std::uint32_t count) {
+  const std::uint64_t end = std::uint64_t{first} + (std::uint64_t{count} + FMM_LANES - 1) / FMM_LANES * FMM_LANES;
+  if (end > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error(
+        "the far field's grids have more nodes than 32 bits count; use a lower order or fewer points");
+  return static_cast<std::uint32_t>(end);
+}
+
 Grids make_grids(const ClusterTree& tree, const GridOptions& options) {
   if (options.order < 2 || options.order > FMM_MAX_ORDER)
     throw std::invalid_argument("order of the far field: " + std::to_string(options.order) + ", not 2 to 6");
@@ -75,7 +84,7 @@ Grids make_grids(const ClusterTree& tree, const GridOptions& options) {
   for (Grid& grid : grids.of) {
     set_counts(grid, options);
     grid.first = first;
-    first += (grid.count + FMM_LANES - 1) / FMM_LANES * FMM_LANES;
+    first = node_behind(first, grid.count);
   }
   for (auto& position : grids.position)
     position.resize(first);

@@ -26,7 +26,11 @@ struct GridOptions {
   bool fewer_across = true;
 };
 
-/// Throws std::invalid_argument on an order out of range.
+/// The first node behind a grid of `count` nodes that begins with node `first`, padded to blocks. Throws
+/// std::length_error where 32 bits do not count it.
+std::uint32_t node_behind(std::uint32_t first, std::uint32_t count);
+
+/// Throws std::invalid_argument on an order out of range, std::length_error as node_behind().
 Grids make_grids(const ClusterTree& tree, const GridOptions& options);
 
 /// Interpolation weights of the point `x` in `grid`, axis after axis, FMM_MAX_ORDER apart.

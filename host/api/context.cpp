@@ -1,8 +1,9 @@
 #include "host/api/parts.h"
+#include "host/tune/self_test.h"
 
 namespace pointgi::api {
 
-Context::Context(const std::string& device) : parts_(new Parts{Session(choose_device(device)), StageLog()}) {}
+Context::Context(const std::string& device) : parts_(new Parts{Session(choose_tested_device(device)), StageLog()}) {}
 
 const std::string& Context::device() const {
   return parts_->session.info().name;

@@ -36,7 +36,7 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
     parts_->light = run_light_stages(session, from.ready.on_device, parts_->request(), stages);
   } else {
     indirect = run_indirect_stages(session, from.ready.on_device, parts_->request(), stages);
-    indirect.map.reset();
+    indirect.prepared.reset();
   }
   if (!indirect.from_surfaces.empty()) {
     parts_->irradiance = upload_irradiance(session, indirect, from.scene);

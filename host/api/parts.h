@@ -19,6 +19,7 @@ struct Scene::Parts {
   SceneDocument document;
   std::string quality = "normal";
   bool quality_of_samples = true;
+  bool quality_of_points = false; ///< light is read at the points, not by way of a picture
 
   /// Checked, of the quality asked for. Throws Error(input).
   pointgi::Scene description() const;

@@ -77,7 +77,10 @@ PointCloud cloud_of(const Points& points) {
 
 pointgi::Scene Scene::Parts::description() const {
   pointgi::Scene scene = scene_of(document);
-  apply_quality(quality, scene, !quality_of_samples);
+  if (quality_of_points)
+    apply_bake_quality(quality, scene);
+  else
+    apply_quality(quality, scene, !quality_of_samples);
   return scene;
 }
 
@@ -136,6 +139,12 @@ void Scene::set_quality(const std::string& quality, bool samples) {
     throw Error(ErrorKind::usage, "quality: expected \"draft\", \"normal\" or \"high\", found \"" + quality + "\"");
   own().quality = quality;
   own().quality_of_samples = samples;
+  own().quality_of_points = false;
+}
+
+void Scene::set_bake_quality(const std::string& quality) {
+  set_quality(quality);
+  own().quality_of_points = true;
 }
 
 void Scene::check() const {

@@ -76,6 +76,10 @@ public:
   /// samples and half of epsilon. `samples`: whether samples change, too. Throws Error(usage).
   void set_quality(const std::string& quality, bool samples = true);
 
+  /// The same for light that is read at the points (Light::radiosity) and not by way of a picture: each point's direct
+  /// light is the mean of 16, 64 or 256 samples, unless radiosity.light_samples says how many. Throws Error(usage).
+  void set_bake_quality(const std::string& quality);
+
   /// Checks all that can be checked without loading clouds. Throws Error(input). Preparing a scene checks it, too.
   void check() const;
 

@@ -17,7 +17,7 @@ api::Scene checked_scene(const BakeOptions& options) {
   if (!has_extension(options.output, ".ply"))
     throw Error(ErrorKind::output, options.output + ": a lit cloud is written as .ply; choose such a name");
   api::Scene checked = api::Scene::from_file(options.input, overrides_of(options));
-  checked.set_quality(options.quality);
+  checked.set_bake_quality(options.quality);
   const Scene scene = checked.parts()->description();
   require_possible_radiosity(scene);
   require_outputs(options.input, scene, {{"-o", options.output}, {"--stats", options.stats_file}});

@@ -15,7 +15,7 @@ struct LightOptions {
   std::optional<double> exposure;
   std::string device;
   std::optional<unsigned> seed;
-  std::string quality = "normal";     ///< draft: four times epsilon, a quarter of a picture's samples; high: half, four
+  std::string quality = "normal";     ///< draft: four times epsilon, a quarter of the samples; high: half, four
   std::vector<std::string> overrides; ///< key.path=value
   std::string stats_file;
   bool quiet = false;

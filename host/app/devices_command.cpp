@@ -1,5 +1,6 @@
 #include "host/app/commands.h"
 #include "host/cl/session.h"
+#include "host/tune/self_test.h"
 #include "host/tune/variant_list.h"
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -21,7 +22,7 @@ std::string kind(const DeviceInfo& info) {
   return info.is_gpu ? "GPU" : info.is_cpu ? "CPU" : "accelerator";
 }
 
-/// Empty when every build succeeds, else the first failure's text.
+/// Empty when every build succeeds and the device answers right, else the first failure's text.
 std::string check_device(const Device& device, std::size_t& count) {
   try {
     Session session(device);
@@ -29,7 +30,7 @@ std::string check_device(const Device& device, std::size_t& count) {
     for (const Program& program : programs)
       session.program(program.file, program.options);
     count = programs.size();
-    return {};
+    return self_test(session);
   } catch (const Error& error) {
     return error.what();
   }
@@ -70,9 +71,11 @@ ExitCode run_devices(bool json, bool check, const std::string& selector) {
       all_fine = all_fine && failure.empty();
       entry["check"] = {{"passed", failure.empty()}, {"builds", builds}, {"message", failure}};
       if (!json)
-        std::printf("   check: %s\n", failure.empty()
-                                          ? ("all " + std::to_string(builds) + " kernel builds compile").c_str()
-                                          : failure.c_str());
+        std::printf(
+            "   check: %s\n",
+            failure.empty()
+                ? ("all " + std::to_string(builds) + " kernel builds compile, and its answers are right").c_str()
+                : failure.c_str());
     }
     list.push_back(entry);
   }

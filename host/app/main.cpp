@@ -77,7 +77,8 @@ std::string unknown_words(CLI::App& app) {
 
 void add_device_options(CLI::App& command, std::string& device, Common& common) {
   command.add_option("--device", device,
-                     "index, part of a name, cpu or gpu; default: a GPU if there is one (see: pointgi devices)");
+                     "index, part of a name, cpu or gpu; default: the GPU of most memory that passes its self-test, "
+                     "else the CPU (see: pointgi devices)");
   command.add_option("--threads", common.threads, "threads of the host and of a CPU device")
       ->check(CLI::Range(1, 1024));
 }
@@ -215,7 +216,7 @@ int run(int argc, char** argv) {
   if (profile_command->parsed()) return code_of(run_profile(profile));
   if (compare_command->parsed()) return code_of(run_compare(compare));
   if (info_command->parsed()) return code_of(run_info(info_file));
-  return code_of(run_devices(json, check, checked_device));
+  return code_of(run_devices(json, check, environment_or(checked_device, "POINTGI_DEVICE")));
 }
 
 } // namespace

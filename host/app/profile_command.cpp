@@ -6,6 +6,7 @@
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
 #include "host/stages/prepare.h"
+#include "host/tune/self_test.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>
@@ -147,7 +148,7 @@ ExitCode run_profile(const ProfileOptions& options) {
   if (!options.output.empty()) require_writable(options.output);
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
 
-  Session session(choose_device(options.device));
+  Session session(choose_tested_device(options.device));
   spdlog::info("device: {} ({}, driver {})", session.info().name, session.info().platform, session.info().driver);
   if (!options.output.empty()) session.record_launches();
   stages.start("cloud");

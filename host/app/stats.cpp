@@ -59,18 +59,8 @@ void add_radiosity(const IndirectLight& light, const RadiositySettings& settings
                       {"residual", light.solution.residual},
                       {"rays", light.rays},
                       {"converged", light.solution.end == SolveEnd::converged}};
-  if (settings.method != "fmm") return;
-  out["radiosity"]["order"] = settings.order;
-  out["radiosity"]["m2l"] = light.counts.m2l;
-  out["radiosity"]["m2p"] = light.counts.m2p;
-  out["radiosity"]["p2p"] = light.counts.p2p;
-  const LinkStatistics& l = light.links;
-  out["vmap"] = {{"pairs_tested", l.pairs_tested},
-                 {"links", l.far + l.mid + l.near_},
-                 {"far", l.far},
-                 {"mid", l.mid},
-                 {"near", l.near_},
-                 {"rays", l.rays}};
+  for (const MethodStatistic& statistic : light.statistics)
+    out[statistic.section][statistic.name] = statistic.value;
 }
 
 void add_render(const Stats& stats, nlohmann::json& out) {

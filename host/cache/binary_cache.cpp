@@ -1,5 +1,6 @@
 #include "host/cache/binary_cache.h"
 #include "host/atomic_file.h"
+#include "host/cache/cache_bound.h"
 #include "host/error.h"
 #include <cstdio>
 #include <cstdlib>
@@ -54,7 +55,8 @@ std::string cache_folder() {
 
 // File: header, key, binary.
 std::optional<std::vector<unsigned char>> load_binary(const std::string& key) {
-  std::ifstream file(file_of(key), std::ios::binary);
+  const std::string path = file_of(key);
+  std::ifstream file(path, std::ios::binary);
   Header header{};
   if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
       std::memcmp(header.magic_word, magic, sizeof magic) != 0 || header.key_size != key.size())
@@ -64,6 +66,7 @@ std::optional<std::vector<unsigned char>> load_binary(const std::string& key) {
   std::vector<unsigned char> binary((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (binary.empty() || binary.size() != header.binary_size || hash_of(binary) != header.binary_hash)
     return std::nullopt;
+  mark_as_used(path);
   return binary;
 }
 
@@ -83,6 +86,7 @@ void store_binary(const std::string& key, const std::vector<unsigned char>& bina
   } catch (const Error&) {
     // Documented: without a cache the next start builds again.
   }
+  bound_cache(cache_folder(), most_cache_bytes());
 }
 
 } // namespace pointgi

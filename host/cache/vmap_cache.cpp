@@ -1,6 +1,7 @@
 #include "host/cache/vmap_cache.h"
 #include "host/atomic_file.h"
 #include "host/cache/binary_cache.h"
+#include "host/cache/cache_bound.h"
 #include "host/run.h"
 #include <cstdio>
 #include <cstring>
@@ -135,6 +136,7 @@ KeptVMap load_vmap(const std::string& key, const ClusterTree& tree) {
   VMap map;
   const std::string wrong = read_map(file, size, key, tree, map);
   if (!wrong.empty()) return warned(wrong);
+  mark_as_used(path);
   return {std::move(map), {}};
 }
 
@@ -169,6 +171,7 @@ void store_vmap(const std::string& key, const VMap& map) {
   } catch (const Error&) {
     // Documented: without a cache the next run makes it again.
   }
+  bound_cache(cache_folder(), most_cache_bytes());
 }
 
 VMap kept_or_made_links(const ClusterTree& tree, View<Splat> splats, VisibilityOracle& oracle,

@@ -1,16 +1,10 @@
 #include "host/cl/device.h"
-#include "host/error.h"
+#include "host/cl/device_choice.h"
 #include <algorithm>
-#include <cctype>
 
 namespace pointgi {
 
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// Drivers pad their strings with blanks and sometimes a NUL.
 std::string trimmed(std::string text) {
@@ -43,13 +37,6 @@ DeviceInfo describe(const cl::Device& device, const cl::Platform& platform) {
   return info;
 }
 
-std::string listing(const std::vector<Device>& devices) {
-  std::string text;
-  for (std::size_t i = 0; i < devices.size(); ++i)
-    text += "\n  " + std::to_string(i) + "  " + devices[i].info.name + " (" + devices[i].info.platform + ")";
-  return text;
-}
-
 } // namespace
 
 std::vector<Device> list_devices() {
@@ -79,33 +66,7 @@ std::vector<Device> list_devices() {
 
 Device choose_device(const std::string& selector) {
   const std::vector<Device> devices = list_devices();
-  if (devices.empty())
-    throw Error(ErrorKind::device, "no OpenCL device was found; install your vendor's OpenCL driver, or "
-                                   "pocl-opencl-icd to run on the CPU");
-  const auto first = [&](auto&& wanted) -> const Device* {
-    const auto at = std::find_if(devices.begin(), devices.end(), wanted);
-    return at == devices.end() ? nullptr : &*at;
-  };
-  const auto is_gpu = [](const Device& d) { return d.info.is_gpu; };
-  const auto is_cpu = [](const Device& d) { return d.info.is_cpu; };
-  const Device* chosen = nullptr;
-  if (selector.empty()) {
-    chosen = first(is_gpu);
-    chosen = chosen != nullptr ? chosen : first(is_cpu);
-    chosen = chosen != nullptr ? chosen : &devices.front();
-  } else if (lower(selector) == "gpu") {
-    chosen = first(is_gpu);
-  } else if (lower(selector) == "cpu") {
-    chosen = first(is_cpu);
-  } else if (std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); })) {
-    const std::size_t index = selector.size() < 9 ? std::stoul(selector) : devices.size();
-    chosen = index < devices.size() ? &devices[index] : nullptr;
-  } else {
-    chosen = first([&](const Device& d) { return lower(d.info.name).find(lower(selector)) != std::string::npos; });
-  }
-  if (chosen == nullptr)
-    throw Error(ErrorKind::device, "device '" + selector + "' was not found; there is:" + listing(devices));
-  return *chosen;
+  return devices[choose_among(infos_of(devices), selector, [](std::size_t) { return std::string(); }).place];
 }
 
 } // namespace pointgi

@@ -35,7 +35,7 @@ struct Device {
 std::vector<Device> list_devices();
 
 /// By `selector`: an index of list_devices(), "cpu", "gpu", or a part of a name (case does not matter); empty: the
-/// first GPU if there is one, else the first CPU device, else the first device.
+/// GPU of most memory, else a CPU device, else any. None is tested (host/tune/self_test.h: choose_tested_device).
 /// Throws Error(device) that lists what there is.
 Device choose_device(const std::string& selector);
 

@@ -3,6 +3,7 @@
 #include "host/cl/session.h"
 #include "host/error.h"
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -29,6 +30,15 @@ const cl::Program& Session::program(const std::string& file, const std::string& 
   return found != programs_.end() ? found->second : programs_.emplace(name, build(file, options)).first->second;
 }
 
+std::vector<std::pair<std::string, std::string>> Session::programs_asked() const {
+  std::vector<std::pair<std::string, std::string>> asked;
+  for (const auto& [name, program] : programs_) {
+    const std::size_t end = name.find('\n');
+    asked.emplace_back(name.substr(0, end), name.substr(end + 1));
+  }
+  return asked;
+}
+
 cl::Program Session::build(const std::string& file, const std::string& options) {
   const char* more = std::getenv("POINTGI_CL_OPTIONS"); // for people who debug kernels: -cl-opt-disable, -g
   const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options) +
@@ -50,6 +60,7 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
   }
   cl::Program program;
   try {
+    ask_faults({DeviceCall::Kind::build, file, 0, 0});
     program = cl::Program(context_, source);
     program.build(devices, all_options.c_str());
   } catch (const cl::Error& error) {
@@ -69,6 +80,9 @@ void Session::dump(const std::string& file, const std::string& options, const st
   std::filesystem::create_directories(dump_folder_, ignored);
   std::string name = file;
   std::replace(name.begin(), name.end(), '/', '_');
+  char hash[16]; // of one file there are programs of several options
+  std::snprintf(hash, sizeof hash, "-%08x", static_cast<unsigned>(fnv1a(options) & 0xffffffffu));
+  name.insert(name.rfind('.'), hash);
   std::ofstream out(dump_folder_ + "/" + name);
   out << "/* clBuildProgram options: " << options << " */\n" << source;
   if (!out)

@@ -1,4 +1,5 @@
 #include "host/cl/session.h"
+#include "host/cl/device_clock.h"
 #include "host/error.h"
 #include <algorithm>
 
@@ -6,21 +7,19 @@ namespace pointgi {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 std::string megabytes(std::uint64_t bytes) {
   return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
 }
 
-bool is_memory_error(int code) {
-  return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES || code == CL_OUT_OF_HOST_MEMORY ||
-         code == CL_INVALID_BUFFER_SIZE;
+/// "1048577 bytes (2 MiB)".
+std::string amount(std::uint64_t bytes) {
+  return std::to_string(bytes) + " bytes (" + megabytes(bytes) + ")";
 }
 
-[[noreturn]] void rethrow(const cl::Error& error, const DeviceInfo& info, const std::string& doing) {
-  const std::string text = info.name + ": " + doing + " failed: " + cl_error_name(error.err());
-  if (is_memory_error(error.err()))
-    throw Error(ErrorKind::memory, text + "; the device has " + megabytes(info.memory_bytes) +
-                                       " in all; use a smaller scene, or another --device");
-  throw Error(ErrorKind::device, text);
+bool is_memory_error(int code) {
+  return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
 }
 
 } // namespace
@@ -42,11 +41,32 @@ Session::Session(const Device& device) : info_(device.info), device_(device.hand
     context_ = cl::Context(device_);
     queue_ = cl::CommandQueue(context_, device_, CL_QUEUE_PROFILING_ENABLE);
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "opening the device");
+    fail(error, "opening the device");
   }
 }
 
 Session::~Session() = default;
+
+void Session::ask_faults(const DeviceCall& call) const {
+  const int code = faults_ ? faults_(call) : CL_SUCCESS;
+  if (code != CL_SUCCESS) throw cl::Error(code, "injected");
+}
+
+void Session::fail(const cl::Error& error, const std::string& doing, const std::string& needed) const {
+  const std::string text = info_.name + ": " + doing + " failed: " + cl_error_name(error.err());
+  const std::uint64_t held = bytes_->now;
+  const std::string there = (needed.empty() ? "" : "; " + needed) + "; buffers hold " + amount(held) +
+                            ", and the device has " + amount(info_.memory_bytes) + " in all";
+  if (is_memory_error(error.err()))
+    throw ResourceError(ErrorKind::memory, text + there + "; use a smaller scene, or another --device");
+  // Drivers say it of registers, local memory and launches that a watchdog ended, of memory too.
+  if (error.err() == CL_OUT_OF_RESOURCES)
+    throw ResourceError(ErrorKind::device, text + there +
+                                               ". The kernel may need more registers or local memory than there are, a "
+                                               "launch may have been lost, or memory is short; use another --device, "
+                                               "or a smaller scene if memory is short");
+  throw Error(ErrorKind::device, text);
+}
 
 cl::Kernel Session::kernel(const std::string& file, const std::string& options, const std::string& name) {
   const cl::Program& built = program(file, options);
@@ -78,33 +98,63 @@ cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
   // Zero-sized buffers do not exist in OpenCL; an unused argument still needs one.
   const std::size_t size = std::max<std::size_t>(bytes, 16);
   if (size > info_.max_allocation_bytes)
-    throw Error(ErrorKind::memory, info_.name + ": a buffer of " + megabytes(size) +
-                                       " is needed, and the device gives " + megabytes(info_.max_allocation_bytes) +
-                                       " at most in one piece; use a smaller cloud, or another --device");
+    throw ResourceError(ErrorKind::memory, info_.name + ": a buffer of " + amount(size) +
+                                               " is needed, and the device gives " +
+                                               amount(info_.max_allocation_bytes) +
+                                               " at most in one piece; use a smaller cloud, or another --device");
   try {
+    ask_faults({DeviceCall::Kind::allocation, {}, size, 0});
     cl::Buffer buffer(context_, flags, size);
     account(buffer, size);
     return buffer;
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "allocating " + megabytes(size));
+    // No kernel, no registers: a device that has no resources for a buffer has no memory.
+    fail(error.err() == CL_OUT_OF_RESOURCES ? cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE) : error,
+         "allocating a buffer", amount(size) + " are needed");
   }
 }
 
 void Session::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes) {
   if (bytes == 0) return;
   try {
+    ask_faults({DeviceCall::Kind::upload, {}, bytes, 0});
     queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "copying " + megabytes(bytes) + " to the device");
+    fail(error, "copying " + amount(bytes) + " to the device");
   }
 }
 
 void Session::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes) {
   if (bytes == 0) return;
   try {
+    ask_faults({DeviceCall::Kind::download, {}, bytes, 0});
     queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, data);
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "copying " + megabytes(bytes) + " from the device");
+    fail(error, "copying " + amount(bytes) + " from the device");
+  }
+}
+
+/// A value of a size that the standard has no pattern for is copied, twice as many at a time.
+void Session::fill_bytes(const cl::Buffer& buffer, const void* value, std::size_t size, std::size_t count) {
+  if (count == 0) return;
+  const bool is_pattern = size <= 128 && (size & (size - 1)) == 0;
+  try {
+    if (is_pattern) {
+      cl_event event = nullptr; // the C call: the C++ one wants a type of its own for each size
+      const int code = clEnqueueFillBuffer(queue_(), buffer(), value, size, 0, size * count, 0, nullptr, &event);
+      if (code != CL_SUCCESS) throw cl::Error(code, "clEnqueueFillBuffer");
+      cl::Event(event).wait();
+      return;
+    }
+    write_bytes(buffer, value, size);
+    for (std::size_t done = 1; done < count;) {
+      const std::size_t more = std::min(done, count - done);
+      queue_.enqueueCopyBuffer(buffer, buffer, 0, done * size, more * size);
+      done += more;
+    }
+    queue_.finish();
+  } catch (const cl::Error& error) {
+    fail(error, "filling " + amount(size * count));
   }
 }
 
@@ -127,7 +177,7 @@ cl::Memory Session::upload_image1d(const void* texels, std::size_t count, bool i
     return cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, texel_format(is_float), std::max<std::size_t>(count, 1),
                              buffer);
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "making an image1d_buffer");
+    fail(error, "making an image1d_buffer");
   }
 }
 
@@ -140,6 +190,7 @@ cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool i
                                        std::to_string(info_.image2d_width) + " x " +
                                        std::to_string(info_.image2d_height) + "; use storage = \"buffer\"");
   try {
+    ask_faults({DeviceCall::Kind::allocation, {}, 16 * width * height, 0});
     cl::Image2D image(context_, CL_MEM_READ_ONLY, texel_format(is_float), width, height);
     account(image, 16 * width * height);
     const auto write = [&](std::size_t rows_from, std::size_t w, std::size_t rows) {
@@ -152,7 +203,7 @@ cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool i
     if (count % width != 0) write(count / width, count % width, 1);
     return image;
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "making an image");
+    fail(error, "making an image");
   }
 }
 
@@ -194,27 +245,66 @@ void Session::refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl:
                                      " was refused: " + cl_error_name(error.err()));
 }
 
-double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments) {
-  if (before_launch_) before_launch_();
+void Session::enqueue(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments, cl::Event& event) {
+  const std::size_t items = shape.global[0] * shape.global[1];
   try {
     check_launch(kernel, device_, info_, shape, arguments);
-    cl::Event event;
+    ask_faults({DeviceCall::Kind::launch, name_of(kernel), 0, items});
     queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(shape.global[0], shape.global[1]),
                                 cl::NDRange(shape.local[0], shape.local[1]), nullptr, &event);
-    event.wait();
-    const auto returned = std::chrono::steady_clock::now();
-    const std::uint64_t start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
-                        end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-    const double seconds = 1e-9 * static_cast<double>(end - start);
-    const std::string name = name_of(kernel);
-    KernelTime& time = times_[name];
-    time.launches += 1;
-    time.seconds += seconds;
-    if (recording_) launches_.push_back({name, label_, start, end, returned});
-    return seconds;
   } catch (const cl::Error& error) {
-    rethrow(error, info_, "running a kernel");
+    fail(error, "launching " + name_of(kernel),
+         std::to_string(items) + " work-items need " +
+             amount(kernel.getWorkGroupInfo<CL_KERNEL_PRIVATE_MEM_SIZE>(device_)) + " of private memory each and " +
+             amount(kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device_)) + " of local memory a group");
   }
+}
+
+double Session::wait(const cl::Kernel& kernel, const cl::Event& event, Clock::time_point called) {
+  const auto seconds_since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  };
+  LaunchTimes times;
+  try {
+    queue_.flush();
+    const Clock::time_point waiting = Clock::now();
+    event.wait();
+    times.wait_seconds = seconds_since(waiting);
+  } catch (const cl::Error& error) {
+    // The event knows the cause, the wait only that there is one. What a part of the launch has added to its results
+    // would be added twice by another try: no ResourceError.
+    cl_int status = 0;
+    if (clGetEventInfo(event(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr) != CL_SUCCESS ||
+        status >= 0)
+      status = error.err();
+    throw Error(ErrorKind::device, info_.name + ": " + name_of(kernel) +
+                                       " was launched and did not end: " + cl_error_name(status) +
+                                       "; the driver's watchdog may have ended it, or the driver is at fault: use "
+                                       "another --device, or a newer driver");
+  }
+  const Clock::time_point returned = Clock::now();
+  times.call_seconds = seconds_since(called);
+  const auto read = [&](cl_profiling_info what, std::uint64_t& ns) { // no exception: some drivers have no clock
+    return clGetEventProfilingInfo(event(), what, sizeof ns, &ns, nullptr) == CL_SUCCESS;
+  };
+  if (!read(CL_PROFILING_COMMAND_START, times.start_ns) || !read(CL_PROFILING_COMMAND_END, times.end_ns))
+    times.start_ns = times.end_ns = 0;
+  const double seconds = seconds_of(times);
+  const std::string name = name_of(kernel);
+  KernelTime& time = times_[name];
+  time.launches += 1;
+  time.seconds += seconds;
+  if (!is_believable(times)) times.end_ns = times.start_ns + static_cast<std::uint64_t>(1e9 * seconds);
+  if (recording_) launches_.push_back({name, label_, times.start_ns, times.end_ns, returned});
+  return seconds;
+}
+
+double Session::run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments) {
+  if (before_launch_) before_launch_();
+  const Clock::time_point called = Clock::now();
+  cl::Event event;
+  enqueue(kernel, shape, arguments, event);
+  return wait(kernel, event, called);
 }
 
 } // namespace pointgi

@@ -1,12 +1,14 @@
 #pragma once
 /// One device at work: context, queue, programs, buffers, launches. The only route to the OpenCL API.
 #include "host/cl/device.h"
+#include "host/cl/resource_error.h"
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace pointgi {
@@ -16,6 +18,18 @@ struct KernelTime {
   std::size_t launches = 0;
   double seconds = 0.0;
 };
+
+/// A call of the device's, as tests may have it fail.
+struct DeviceCall {
+  enum class Kind { build, allocation, upload, download, launch };
+  Kind kind;
+  std::string name;           ///< of the program's file or the kernel; else empty
+  std::uint64_t bytes = 0;    ///< of an allocation, upload or download
+  std::size_t work_items = 0; ///< of a launch
+};
+
+/// For tests: says what the device answers to a call instead of being asked, CL_SUCCESS to let it be asked.
+using FaultInjector = std::function<int(const DeviceCall&)>;
 
 /// One launch as the device's clock saw it.
 struct LaunchRecord {
@@ -81,11 +95,11 @@ public:
     return data;
   }
 
-  /// The first `count` elements become `value`.
+  /// The first `count` elements become `value`, of which one alone travels to the device.
   template <typename T>
   void fill(const Buffer<T>& buffer, const T& value, std::size_t count) {
-    const std::vector<T> data(count, value);
-    write_bytes(buffer.handle, data.data(), count * sizeof(T));
+    static_assert(std::is_trivially_copyable_v<T>, "its bytes are what the device gets");
+    fill_bytes(buffer.handle, &value, sizeof(T), count);
   }
 
   /// `texels` RGBA texels of four 32-bit words as image1d_buffer, or as image2d with rows of 2^width_log2 texels.
@@ -93,8 +107,9 @@ public:
   cl::Memory upload_image2d(const void* texels, std::size_t count, bool is_float, unsigned width_log2);
 
   /// Runs the kernel with these arguments and waits; returns the device's seconds, which also go to kernel_times().
-  /// Checks work-group, local memory and argument count before the device sees them. Throws Error(device), or
-  /// Error(memory) when the device has too little.
+  /// Checks work-group, local memory and argument count before the device sees them. Throws ResourceError
+  /// when the device refuses the launch for want of memory or other resources, and nothing was run; Error(device) for
+  /// all else, a launch that it began and lost among it.
   template <typename... Args>
   double launch(cl::Kernel& kernel, const LaunchShape& shape, const Args&... args) {
     cl_uint index = 0;
@@ -111,12 +126,17 @@ public:
   void record_launches() { recording_ = true; }
   void label_launches(const std::string& label) { label_ = label; }
   const std::vector<LaunchRecord>& launches() const { return launches_; }
+  /// Every program that was asked for: file and options.
+  std::vector<std::pair<std::string, std::string>> programs_asked() const;
   std::size_t programs_compiled() const { return compiled_; }
   std::size_t programs_from_cache() const { return from_cache_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
 
   /// From now on called before every launch: it may show progress, or throw to end the work there. Empty: nothing is.
   void before_launches(std::function<void()> call) { before_launch_ = std::move(call); }
+
+  /// From now on asked before every build, allocation, copy and launch. Empty: the device alone answers.
+  void inject_faults(FaultInjector faults) { faults_ = std::move(faults); }
 
   /// Writes every program built from now on, as the compiler sees it, and its options to this folder (--dump-kernels).
   void dump_kernels_to(const std::string& folder) { dump_folder_ = folder; }
@@ -130,11 +150,17 @@ private:
   cl::Buffer allocate_bytes(std::size_t bytes, cl_mem_flags flags);
   void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes);
   void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes);
+  void fill_bytes(const cl::Buffer& buffer, const void* value, std::size_t size, std::size_t count);
+  void ask_faults(const DeviceCall& call) const;
   cl::Program build(const std::string& file, const std::string& options);
   void dump(const std::string& file, const std::string& options, const std::string& source) const;
   void account(const cl::Memory& memory, std::uint64_t bytes);
+  /// For a call that did not succeed; `needed` says what it wanted of the device.
+  [[noreturn]] void fail(const cl::Error& error, const std::string& doing, const std::string& needed = {}) const;
   [[noreturn]] void refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl::Error& error) const;
   double run(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments);
+  void enqueue(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments, cl::Event& event);
+  double wait(const cl::Kernel& kernel, const cl::Event& event, std::chrono::steady_clock::time_point called);
 
   template <typename T>
   static void set_argument(cl::Kernel& kernel, cl_uint index, const T& value) {
@@ -156,6 +182,7 @@ private:
   std::size_t from_cache_ = 0;
   std::string dump_folder_;
   std::function<void()> before_launch_;
+  FaultInjector faults_;
   bool recording_ = false;
   std::string label_;
   std::vector<LaunchRecord> launches_;

@@ -57,8 +57,10 @@ Graph neighbour_graph(const Sites& sites, const std::vector<Eigen::Vector3f>& no
   return graph;
 }
 
-/// Slots in the order of their weights. Of an edge that both ends list, the end with the lower number keeps it.
-std::vector<std::uint32_t> edges_by_weight(const Graph& graph) {
+/// Slots in the order of their weights, as numbers that count them all. Of an edge that both ends list, the end with
+/// the lower number keeps it.
+template <class Slot>
+std::vector<Slot> edges_by_weight(const Graph& graph) {
   const auto has_twin = [&](std::size_t slot) {
     const std::uint32_t from = static_cast<std::uint32_t>(slot / graph_neighbours), to = graph.to[slot];
     if (from < to) return false;
@@ -73,9 +75,9 @@ std::vector<std::uint32_t> edges_by_weight(const Graph& graph) {
   }
   for (std::uint32_t b = 0; b < buckets; ++b)
     start[b + 1] += start[b];
-  std::vector<std::uint32_t> order(start[buckets]);
+  std::vector<Slot> order(start[buckets]);
   for (std::size_t slot = 0; slot < graph.to.size(); ++slot)
-    if (kept[slot]) order[start[graph.key[slot] / 2]++] = static_cast<std::uint32_t>(slot);
+    if (kept[slot]) order[start[graph.key[slot] / 2]++] = static_cast<Slot>(slot);
   return order;
 }
 
@@ -117,14 +119,26 @@ private:
 
 } // namespace
 
-SpanningForest agree_normals(const Sites& sites, std::vector<Eigen::Vector3f>& normals) {
+namespace {
+
+template <class Slot>
+void join_by_weight(const Graph& graph, SignedSets& sets) {
+  for (const Slot slot : edges_by_weight<Slot>(graph))
+    sets.join(static_cast<std::uint32_t>(slot / graph_neighbours), graph.to[slot], graph.key[slot] & 1u);
+}
+
+} // namespace
+
+SpanningForest agree_normals(const Sites& sites, std::vector<Eigen::Vector3f>& normals, std::uint64_t narrow_slots) {
   const std::uint32_t n = sites.size();
   SignedSets sets(n);
   SpanningForest forest;
   {
     const Graph graph = neighbour_graph(sites, normals);
-    for (const std::uint32_t slot : edges_by_weight(graph))
-      sets.join(slot / graph_neighbours, graph.to[slot], graph.key[slot] & 1u);
+    if (graph.to.size() <= narrow_slots)
+      join_by_weight<std::uint32_t>(graph, sets);
+    else
+      join_by_weight<std::uint64_t>(graph, sets);
     forest.spacing2.resize(n);
     for (std::uint32_t s = 0; s < n; ++s)
       forest.spacing2[s] = graph.reach2[s] * static_cast<float>(pi / graph_neighbours);

@@ -19,7 +19,9 @@ inline double sign_agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 }
 
 /// Flips normals so that they agree along the edges of a minimum spanning forest of the 8-nearest-neighbour graph, the
-/// surest edges first. What remains free is one sign a tree. Deterministic.
-SpanningForest agree_normals(const Sites& sites, std::vector<Eigen::Vector3f>& normals);
+/// surest edges first. What remains free is one sign a tree. Deterministic. Edges, eight slots a site, are numbered by
+/// 32 bits where there are at most `narrow_slots`, by 64 where there are more: the result is the same.
+SpanningForest agree_normals(const Sites& sites, std::vector<Eigen::Vector3f>& normals,
+                             std::uint64_t narrow_slots = std::uint64_t{1} << 32);
 
 } // namespace pointgi

@@ -20,17 +20,48 @@ std::string group_options(WorkGroup group) {
   return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
 }
 
+std::string light_options(unsigned lights) {
+  if (lights == 0) return {};
+  std::string options = " -D HAS_DELTA_LIGHTS";
+#define OPTION(ID, name)                                                                                               \
+  options += (lights >> LIGHT_##ID & 1u) != 0 ? " -D WITH_LIGHT_" #ID "=1" : " -D WITH_LIGHT_" #ID "=0";
+  LIGHT_KINDS(OPTION)
+#undef OPTION
+  return options;
+}
+
+std::string material_options(unsigned materials, unsigned flags) {
+  std::string options = " -D HAS_SPECULAR";
+  if ((flags & MATERIAL_TRANSMITS) != 0) options += " -D HAS_TRANSMISSION";
+  if ((flags & MATERIAL_HAS_LOBE) != 0) options += " -D HAS_LOBES";
+#define OPTION(ID, name)                                                                                               \
+  options += (materials >> MATERIAL_##ID & 1u) != 0 ? " -D WITH_" #ID "=1" : " -D WITH_" #ID "=0";
+  MATERIAL_KINDS(OPTION)
+#undef OPTION
+  return options;
+}
+
 std::string feature_options(const SceneFeatures& features) {
-  return std::string(features.delta_lights ? " -D HAS_DELTA_LIGHTS" : "") +
-         (features.emitters ? " -D HAS_EMITTERS" : "") + (features.environment ? " -D HAS_ENVIRONMENT" : "") +
-         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
-         (features.specular ? " -D HAS_SPECULAR" : "") + (features.glass ? " -D HAS_GLASS" : "") +
-         (features.phong ? " -D HAS_PHONG" : "") +
+  return light_options(features.lights) + (features.emitters ? " -D HAS_EMITTERS" : "") +
+         (features.environment ? " -D HAS_ENVIRONMENT" : "") + (features.radiosity ? " -D HAS_RADIOSITY" : "") +
+         (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
+         (features.specular() ? material_options(features.materials, features.material_flags) : "") +
          (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
                                 : "");
 }
 
 } // namespace
+
+SceneFeatures features_on(const DeviceInfo& device, const SceneFeatures& of_scene) {
+  SceneFeatures f = of_scene;
+  if (device.is_cpu) return f;
+  f.materials = f.specular() ? all_materials : 0u;
+  f.material_flags = f.specular() ? all_material_flags : 0u;
+  const bool lit = f.lights != 0 || f.emitters || f.environment || f.radiosity;
+  if (lit) f.emitters = true;
+  if (lit && f.shadow_rays) f.lights = all_lights, f.environment = true;
+  return f;
+}
 
 unsigned gather_room(unsigned k) {
   return k <= 64 ? 64 : k <= 512 ? 512 : 1024;
@@ -81,7 +112,7 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 
 Program specular_rays_program(const TraversalVariant& variant) {
   return program(variant, "test/specular_rays.cl",
-                 feature_options({false, false, false, false, true, true, true, true}));
+                 feature_options({0, false, false, false, true, all_materials, all_material_flags}));
 }
 
 Program segments_program(const TraversalVariant& variant) {

@@ -1,5 +1,6 @@
 #pragma once
 /// The choices that make a kernel variant, and the one place where -D options are composed.
+#include "host/cl/device.h"
 #include "host/scene/scene.h"
 #include <string>
 
@@ -27,16 +28,27 @@ std::string name_of(const TraversalVariant& variant);
 
 /// What the scene has, so that kernels are built without what it has not (method.md §7).
 struct SceneFeatures {
-  bool delta_lights = false;
+  unsigned lights = 0; ///< bit LIGHT_<ID> of each kind of [[light]] (shared/light_kinds.h)
   bool emitters = false;
   bool environment = false;
-  bool radiosity = false;  ///< of the picture: points have irradiance from surfaces
-  bool shadow_rays = true; ///< of the picture: direct light comes by them, not with the points' irradiance
-  bool specular = false;   ///< some splats are no diffuse ones: rays go on, normals are a field
-  bool glass = false;      ///< some are glass; specular too then
-  bool phong = false;      ///< some have a Phong lobe; specular too then
-  unsigned gather_k = 0;   ///< of the picture: photons an estimate of caustics; 0: there are none; specular too then
+  bool radiosity = false;      ///< of the picture: points have irradiance from surfaces
+  bool shadow_rays = true;     ///< of the picture: direct light comes by them, not with the points' irradiance
+  unsigned materials = 0;      ///< bit MATERIAL_<ID> of each kind of material (shared/material_kinds.h)
+  unsigned material_flags = 0; ///< what these materials do: MATERIAL_...; kinds count only where one is specular
+  unsigned gather_k = 0;       ///< of the picture: photons an estimate of caustics; 0: there are none
+
+  bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };
+
+/// Every kind of material, or of light.
+constexpr unsigned all_materials = (1u << MATERIAL_KIND_COUNT) - 1u, all_lights = (1u << LIGHT_KIND_COUNT) - 1u;
+/// What some of them do.
+constexpr unsigned all_material_flags =
+    MATERIAL_REFLECTS_DIFFUSELY | MATERIAL_SPECULAR | MATERIAL_HAS_LOBE | MATERIAL_TRANSMITS;
+/// The features that programs of this device are built with. CPU devices: those of the scene, and no more. Others: one
+/// of few sets that hold them (all lights, all specular materials), so that every program which a scene may ask for can
+/// be listed (host/tune/variant_list.h), checked and compiled before; what a scene lacks costs such a program a test.
+SceneFeatures features_on(const DeviceInfo& device, const SceneFeatures& of_scene);
 
 /// Rows of the image2d form hold 2^image_width_log2 texels: 4096, which every OpenCL 1.2 device with images allows.
 constexpr unsigned image_width_log2 = 12;

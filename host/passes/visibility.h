@@ -1,5 +1,6 @@
 #pragma once
 /// The V-map's questions answered by the device, over the pools that rendering traces too.
+#include "host/cl/batches.h"
 #include "host/cl/session.h"
 #include "host/passes/device_pools.h"
 #include "octree/vmap/make_links.h"
@@ -24,7 +25,7 @@ private:
   float step_delta_;
   cl::Kernel kernel_;
   Buffer<Splat> points_;
-  std::size_t at_once_; ///< segments of the next launch
+  Pace pace_; ///< segments
 };
 
 } // namespace pointgi

@@ -1,5 +1,4 @@
 #include "host/photon/device_photon_map.h"
-#include "host/passes/pace.h"
 #include "host/passes/variant.h"
 #include <algorithm>
 #include <cmath>
@@ -46,7 +45,7 @@ DevicePhotonMap upload_photon_map(Session& session, const PhotonMap& map, unsign
 }
 
 bool store_caustics(Session& session, View<Splat> points, View<std::uint8_t> receives, DevicePhotonMap& map,
-                    const WorkControl& control) {
+                    const LaunchControl& control) {
   std::vector<Splat> receivers;
   std::vector<cl_float4> places;
   for (const Splat& s : points) {
@@ -64,20 +63,13 @@ bool store_caustics(Session& session, View<Splat> points, View<std::uint8_t> rec
   cl::Kernel kernel = session.kernel(program.file, program.options, "caustics_of_points");
   const auto device_places = session.upload(places);
   map.at_points = session.allocate<cl_float4>(points.size);
-  Pace pace{1e5}; // points
-  for (std::size_t first = 0; first < points.size;) {
-    if (control.stop()) return false;
-    const auto wanted = static_cast<std::size_t>(pace.of_a_launch());
-    const std::size_t count = std::min(std::max(wanted, 4 * group), points.size - first);
-    const double seconds =
-        session.launch(kernel, LaunchShape::line(count, group), map.nodes, map.buckets, map.params, area_map.nodes,
-                       area_map.buckets, area_map.params, device_places, map.at_points, most_radii,
-                       static_cast<cl_uint>(first), static_cast<cl_uint>(first + count));
-    pace.learn(static_cast<double>(count), seconds);
-    first += count;
-    control.progress(static_cast<double>(first) / static_cast<double>(points.size));
-  }
-  return true;
+  Pace pace(1e5, busy_work_items(session.info())); // points
+  const auto launch = [&](std::size_t first, std::size_t count) {
+    return session.launch(kernel, LaunchShape::line(count, group), map.nodes, map.buckets, map.params, area_map.nodes,
+                          area_map.buckets, area_map.params, device_places, map.at_points, most_radii,
+                          static_cast<cl_uint>(first), static_cast<cl_uint>(first + count));
+  };
+  return for_each_batch(EqualItems{points.size}, pace, control, launch) == points.size;
 }
 
 } // namespace pointgi

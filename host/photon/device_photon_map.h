@@ -1,9 +1,9 @@
 #pragma once
 /// The photon map on the device.
+#include "host/cl/batches.h"
 #include "host/cl/session.h"
 #include "host/photon/photon_map.h"
 #include "octree/splat.h"
-#include <functional>
 
 namespace pointgi {
 
@@ -19,16 +19,10 @@ struct DevicePhotonMap {
 /// Throws Error(device), Error(memory).
 DevicePhotonMap upload_photon_map(Session& session, const PhotonMap& map, unsigned k, double radius);
 
-/// How work on a photon map is watched.
-struct WorkControl {
-  std::function<bool()> stop;           ///< asked between launches
-  std::function<void(double)> progress; ///< share done, after every launch
-};
-
 /// Finds what the photons of `map` bring to those of the pool's points that receive light (of each material: whether
 /// its splats do), and keeps it there as kernels/photon/caustics_of_points.cl says. False when `stop` ended it. Throws
 /// Error(device), Error(memory).
 bool store_caustics(Session& session, View<Splat> points, View<std::uint8_t> receives, DevicePhotonMap& map,
-                    const WorkControl& control);
+                    const LaunchControl& control);
 
 } // namespace pointgi

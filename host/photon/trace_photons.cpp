@@ -1,4 +1,5 @@
 #include "host/photon/trace_photons.h"
+#include "host/cl/batches.h"
 #include "host/passes/visibility.h"
 #include "host/photon/diffuse_photons.h"
 #include "host/photon/kept_photons.h"
@@ -8,9 +9,8 @@ namespace pointgi {
 
 namespace {
 
-/// A launch aims at this many seconds, as the render stage's do.
-constexpr double launch_seconds = 0.1;
-constexpr std::size_t first_batch = 1u << 12, fewest = 1u << 8, most_at_once = 1u << 18, group = 64;
+/// Photons of the first launch, of which nothing is known yet, and of any: 16 MiB of flights.
+constexpr std::size_t first_batch = 1u << 12, most_at_once = 1u << 18, group = 64;
 
 void add(const float power[3], std::array<double, 3>& to) {
   for (std::size_t c = 0; c < 3; ++c)
@@ -56,23 +56,23 @@ void book(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger
 
 SceneFeatures features_of(const DeviceLighting& lighting) {
   SceneFeatures features;
-  features.specular = true;
-  features.glass = lighting.has_type(MATERIAL_GLASS);
-  features.phong = lighting.has_type(MATERIAL_PHONG);
+  features.lights = lighting.light_types;
+  features.materials = lighting.material_types;
+  features.material_flags = lighting.flags;
   return features;
 }
 
 /// Of the light that a splat receives, on both sides together where it has two, about how much goes on by mirror or
 /// lobe.
 double passed_on(const Material& material) {
-  if (material.type == MATERIAL_DIFFUSE) return 0.0;
-  if (material.type == MATERIAL_GLASS) return 2.0;
+  if ((material.flags & MATERIAL_SPECULAR) == 0) return 0.0;
+  if ((material.flags & MATERIAL_TRANSMITS) != 0) return 2.0;
   return double{*std::max_element(material.specular, material.specular + 3)};
 }
 
 auto is_specular(const DeviceLighting& lighting) {
   return [&lighting](const Splat& s) {
-    return lighting.materials[static_cast<std::size_t>(s.material)].type != MATERIAL_DIFFUSE;
+    return (lighting.materials[static_cast<std::size_t>(s.material)].flags & MATERIAL_SPECULAR) != 0;
   };
 }
 
@@ -93,7 +93,8 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
                             const FlightControl& control) {
   TracedPhotons traced;
   if (request.plan.photons == 0) return traced;
-  const Program program = trace_photons_program(request.variant, features_of(request.lighting), request.start);
+  const Program program =
+      trace_photons_program(request.variant, features_on(session.info(), features_of(request.lighting)), request.start);
   cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
   RenderParams params = request.lighting.params;
   params.seed += request.flight * 0x9e3779b9u;
@@ -111,16 +112,15 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   const auto splats = session.upload(request.leaves.splats);
   const auto leaf_of = session.upload(request.leaves.leaf_of);
   const std::size_t photons = request.plan.photons;
-  std::size_t batch = std::min(photons, request.batch > 0 ? request.batch : first_batch);
-  const std::size_t room = std::min(photons, request.batch > 0 ? request.batch : most_at_once);
-  const auto flights = session.allocate<PhotonFlight>(room);
+  Pace pace = request.batch > 0 ? Pace(static_cast<double>(request.batch), request.batch, request.batch)
+                                : Pace(first_batch, busy_work_items(session.info()), most_at_once);
+  Buffer<PhotonFlight> flights;
   KeptPhotons kept(control.most_stored, request.lighting.params.seed);
-  for (std::size_t first = 0; first < photons;) {
-    if (control.stop()) {
-      traced.stopped = true;
-      return traced;
+  const auto launch = [&](std::size_t first, std::size_t count) {
+    if (flights.size < count) {
+      flights = {};
+      flights = session.allocate<PhotonFlight>(count);
     }
-    const std::size_t count = std::min(batch, photons - first);
     const double seconds = session.launch(
         kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points, request.normal_field,
         device_params, materials, delta, emitters, radiance, aims, leaves, splats, leaf_of, flights,
@@ -129,11 +129,11 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
     auto number = static_cast<std::uint32_t>(first);
     for (const PhotonFlight& flight : session.download(flights, count))
       book(flight, number++, traced.ledger, kept);
-    first += count;
-    if (control.progress) control.progress(static_cast<double>(first) / static_cast<double>(photons));
-    if (request.batch > 0) continue;
-    if (seconds < 0.5 * launch_seconds && count == batch) batch = std::min(2 * batch, room);
-    if (seconds > 2.0 * launch_seconds) batch = std::max(batch / 2, fewest);
+    return seconds;
+  };
+  if (for_each_batch(EqualItems{photons}, pace, {control.stop, control.progress}, launch) < photons) {
+    traced.stopped = true;
+    return traced;
   }
   traced.one_of = kept.one_of();
   traced.stored = kept.take();

@@ -8,6 +8,8 @@ namespace pointgi {
 
 namespace {
 
+constexpr double first_pairs = 2e7; ///< of a first launch, of which nothing is known yet
+
 std::string megabytes(std::uint64_t bytes) {
   return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
 }
@@ -35,15 +37,21 @@ void DeviceDirect::make_bands(const DirectOptions& options) {
 }
 
 template <class Launch>
-void DeviceDirect::in_windows(const Band& of_rows, const Band& of_columns, Pace& pace, const Launch& launch) {
+void DeviceDirect::in_windows(const Band& of_rows, const Band& of_columns, std::size_t group, Pace& pace,
+                              const Launch& launch) {
+  const double busy = static_cast<double>(busy_work_items(session_.info())) / static_cast<double>(group);
   for (cl_uint row = of_rows.first; row < of_rows.end;) {
     // So many rows h that h (w + h), more than lie below the diagonal, is a launch's work.
-    const double w = row - of_columns.first, work = pace.of_a_launch();
+    const double w = row - of_columns.first, work = std::max(busy, pace.of_a_launch());
     const auto most = static_cast<cl_uint>(std::max(1.0, 0.5 * (std::sqrt(w * w + 4.0 * work) - w)));
     const cl_uint rows = std::min(of_rows.end - row, most), end = std::min(of_columns.end, row + rows);
-    const auto columns = static_cast<cl_uint>(std::max(1.0, work / rows)); // a row may be more than a launch
-    for (cl_uint column = of_columns.first; column < end; column += columns)
-      launch(column, std::min(columns, end - column), row, rows);
+    std::vector<double> before{0.0}; // tiles of the window's columns, on and below the diagonal
+    for (cl_uint column = of_columns.first; column < end; ++column)
+      before.push_back(before.back() + (column <= row ? rows : row + rows - column));
+    pace.set_fewest(static_cast<std::size_t>(std::ceil(busy / rows))); // columns; a row may be more than a launch
+    for_each_batch(WeighedItems{before}, pace, {}, [&](std::size_t first, std::size_t count) {
+      return launch(of_columns.first + static_cast<cl_uint>(first), static_cast<cl_uint>(count), row, rows);
+    });
     row += rows;
   }
 }
@@ -60,21 +68,23 @@ void DeviceDirect::trace(const DevicePools& pools, const TraversalVariant& varia
   for (const Band& of_rows : bands_)
     for (const Band& of_columns : bands_) {
       if (of_columns.first > of_rows.first) break;
-      in_windows(of_rows, of_columns, pace, [&](cl_uint column, cl_uint columns, cl_uint row, cl_uint rows) {
-        session_.fill(rays, cl_uint{0}, 1);
-        const double seconds = session_.launch(
-            kernel, LaunchShape::grid(columns, rows, variant.group.size(), 1), pools.nodes, pools.leaves, pools.points,
-            table, static_cast<cl_uint>(points.size), cl_uint4{{column, columns, row, rows}}, of_rows.bits,
-            of_columns.bits, cl_uint2{{of_rows.first, of_columns.first}}, tiles_, rays, options.step_delta);
-        rays_ += session_.download(rays, 1)[0];
-        trace_seconds_ += seconds;
-        double tiles = 0.0;
-        for (cl_uint r = row; r < row + rows; ++r)
-          tiles += r < column ? 0.0 : std::min(columns, r - column + 1);
-        pace.learn(tiles, seconds);
-        done += tiles;
-        if (options.progress) options.progress(done / all);
-      });
+      in_windows(of_rows, of_columns, variant.group.size(), pace,
+                 [&](cl_uint column, cl_uint columns, cl_uint row, cl_uint rows) {
+                   session_.fill(rays, cl_uint{0}, 1);
+                   const double seconds =
+                       session_.launch(kernel, LaunchShape::grid(columns, rows, variant.group.size(), 1), pools.nodes,
+                                       pools.leaves, pools.points, table, static_cast<cl_uint>(points.size),
+                                       cl_uint4{{column, columns, row, rows}}, of_rows.bits, of_columns.bits,
+                                       cl_uint2{{of_rows.first, of_columns.first}}, tiles_, rays, options.step_delta);
+                   rays_ += session_.download(rays, 1)[0];
+                   trace_seconds_ += seconds;
+                   double tiles = 0.0;
+                   for (cl_uint r = row; r < row + rows; ++r)
+                     tiles += r < column ? 0.0 : std::min(columns, r - column + 1);
+                   done += tiles;
+                   if (options.progress) options.progress(done / all);
+                   return seconds;
+                 });
     }
 }
 
@@ -86,6 +96,8 @@ DeviceDirect::DeviceDirect(Session& session, const DevicePools& pools, const Tra
   make_bands(options);
   point_buffer_ = session_.upload(point_planes(points_, stride_));
   irradiance_ = session_.allocate<cl_float>(3 * static_cast<std::size_t>(stride_));
+  const double row_pairs = static_cast<double>(FMM_LANES) * static_cast<double>(points.size);
+  rows_ = Pace(first_pairs / row_pairs, busy_work_items(session_.info()));
   const Program program = fmm_program("radiosity/direct/receive_from_all.cl");
   receive_ = session_.kernel(program.file, program.options, "receive_from_all");
   trace(pools, variant, points, options);
@@ -98,17 +110,14 @@ void DeviceDirect::apply(View<double> radiosity, Judge, std::vector<double>& irr
   const std::size_t group = session_.info().is_cpu ? 8 : 32;
   const auto sources = static_cast<cl_uint>(points_.size());
   for (const Band& band : bands_)
-    for (cl_uint row = band.first; row < band.end;) {
-      const double pairs = static_cast<double>(FMM_LANES) * sources; // a row
-      // Not fewer than keep the device busy, even if that takes longer.
-      const double fits = std::max(pairs_.of_a_launch() / pairs, 16.0 * static_cast<double>(group));
-      const auto rows = static_cast<cl_uint>(std::min<double>(band.end - row, fits));
-      const double seconds = session_.launch(receive_, LaunchShape::line(rows, group), row, rows, band.bits, band.first,
-                                             FMM_LANES * tiles_, point_buffer_, sources, stride_, flux, irradiance_);
+    for_each_batch(EqualItems{band.end - band.first}, rows_, {}, [&](std::size_t first, std::size_t count) {
+      const double seconds =
+          session_.launch(receive_, LaunchShape::line(count, group), band.first + static_cast<cl_uint>(first),
+                          static_cast<cl_uint>(count), band.bits, band.first, FMM_LANES * tiles_, point_buffer_,
+                          sources, stride_, flux, irradiance_);
       apply_seconds_ += seconds;
-      pairs_.learn(pairs * rows, seconds);
-      row += rows;
-    }
+      return seconds;
+    });
   irradiance = rows_of_planes(session_.download(irradiance_, irradiance_.size), points_.size(), stride_);
 }
 

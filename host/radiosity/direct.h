@@ -3,9 +3,9 @@
 /// kernels/radiosity/direct/receive_from_all.cl): exact and quadratic, what the fast multipole method is measured by.
 #include "fmm/operators/point_pair.h"
 #include "fmm/solve/radiosity_operator.h"
+#include "host/cl/batches.h"
 #include "host/cl/session.h"
 #include "host/passes/device_pools.h"
-#include "host/passes/pace.h"
 #include <functional>
 
 namespace pointgi {
@@ -45,9 +45,10 @@ private:
   void make_bands(const DirectOptions& options);
   void trace(const DevicePools& pools, const TraversalVariant& variant, View<Splat> points,
              const DirectOptions& options);
-  /// Calls launch(column, columns, row, rows) for windows that cover the tiles on and below the diagonal.
+  /// Calls launch(column, columns, row, rows), which returns the device's seconds, for windows that cover the tiles on
+  /// and below the diagonal. `group`: work-items a tile.
   template <class Launch>
-  void in_windows(const Band& of_rows, const Band& of_columns, Pace& pace, const Launch& launch);
+  void in_windows(const Band& of_rows, const Band& of_columns, std::size_t group, Pace& pace, const Launch& launch);
 
   Session& session_;
   std::vector<ExchangePoint> points_;
@@ -56,7 +57,7 @@ private:
   std::vector<Band> bands_;
   Buffer<cl_float> point_buffer_, irradiance_;
   cl::Kernel receive_;
-  Pace pairs_{2e7};
+  Pace rows_{1.0}; ///< rows of receive_from_all
   std::uint64_t rays_ = 0;
   double trace_seconds_ = 0.0, apply_seconds_ = 0.0;
 };

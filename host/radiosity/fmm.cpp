@@ -41,6 +41,7 @@ DeviceFmm::Rows DeviceFmm::upload(const SourceLists& lists) {
 
 DeviceFmm::Jobs DeviceFmm::make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs) {
   Jobs jobs;
+  jobs.pace = Pace(first_pairs, busy_work_items(session_.info()));
   jobs.items = session_.upload(items);
   jobs.cost.assign(1, 0.0);
   for (const double cost : costs)
@@ -152,19 +153,12 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
 
 template <class Launch>
 void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
-  const std::size_t all = jobs.cost.size() - 1;
-  for (std::size_t first = 0; first < all;) {
-    const double until = jobs.cost[first] + jobs.pace.of_a_launch();
-    const auto end = std::upper_bound(jobs.cost.begin() + first + 1, jobs.cost.end(), until);
-    const std::size_t fits = static_cast<std::size_t>(end - jobs.cost.begin()) - 1 - first;
-    // Not fewer than keep the device busy, even if that takes longer.
-    const std::size_t count = std::min(all - first, std::max<std::size_t>(fits, 16 * group_));
+  for_each_batch(WeighedItems{jobs.cost}, jobs.pace, {}, [&](std::size_t first, std::size_t count) {
     const double seconds =
         launch(LaunchShape::line(count, group_), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     device_seconds_ += seconds;
-    jobs.pace.learn(jobs.cost[first + count] - jobs.cost[first], seconds);
-    first += count;
-  }
+    return seconds;
+  });
 }
 
 namespace {

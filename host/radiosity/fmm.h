@@ -1,8 +1,8 @@
 #pragma once
 /// H(B) by the fast multipole method on the device (method.md section 4; kernels/fmm).
 #include "fmm/operators/fmm_operator.h"
+#include "host/cl/batches.h"
 #include "host/cl/session.h"
-#include "host/passes/pace.h"
 
 namespace pointgi {
 
@@ -23,11 +23,13 @@ public:
   const InteractionLists& lists() const { return lists_; }
 
 private:
+  static constexpr double first_pairs = 2e7; ///< of a first launch, of which nothing is known yet
+
   /// Work-items that run one after another in launches of about the same time.
   struct Jobs {
     Buffer<cl_uint4> items;
     std::vector<double> cost; ///< of the jobs before this one, in pairs; one more than there are jobs
-    Pace pace{2e7};           ///< pairs
+    Pace pace{first_pairs};   ///< pairs
   };
   struct Rows {
     Buffer<cl_uint> begin, source;

@@ -1,21 +1,20 @@
 #include "host/radiosity/point_irradiance.h"
-#include <algorithm>
+#include "host/cl/batches.h"
 
 namespace pointgi {
 
 namespace {
 
-/// A launch aims at this many seconds, as the render stage's do.
-constexpr double launch_seconds = 0.1;
-constexpr std::size_t first_points = 256, fewest_points = 64, group = 64;
+/// Points of the first launch, of which nothing is known yet.
+constexpr std::size_t first_points = 256, group = 64;
 
 } // namespace
 
 Buffer<float> direct_irradiance_of_points(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                           const DeviceLighting& lighting, double side, std::size_t points,
                                           unsigned samples, bool with_emitters, const std::function<bool()>& stop) {
-  const SceneFeatures features{!lighting.delta.empty(), with_emitters && !lighting.emitters.empty(),
-                               lighting.has_environment};
+  SceneFeatures features{lighting.light_types, with_emitters && !lighting.emitters.empty(), lighting.has_environment};
+  if (!session.info().is_cpu) features = {all_lights, with_emitters, true}; // one of two programs: features_on()
   const Program program = direct_irradiance_program(variant, features);
   cl::Kernel kernel = session.kernel(program.file, program.options, "direct_irradiance_of_points");
   RenderParams params = lighting.params;
@@ -26,18 +25,12 @@ Buffer<float> direct_irradiance_of_points(Session& session, const DevicePools& p
   const auto emitters = session.upload(lighting.emitters);
   auto irradiance = session.allocate<float>(3 * points);
   session.fill(irradiance, 0.0f, 3 * points);
-  std::size_t most = first_points;
-  for (std::size_t first = 0; first < points && !stop();) {
-    const std::size_t end = std::min(first + most, points);
-    const double seconds = session.launch(kernel, LaunchShape::line(end - first, group), pools.nodes, pools.leaves,
-                                          pools.points, device_params, materials, delta, emitters, irradiance,
-                                          static_cast<cl_uint>(first), static_cast<cl_uint>(end), samples);
-    first = end;
-    if (seconds < 0.5 * launch_seconds)
-      most *= 2;
-    else if (seconds > 2.0 * launch_seconds)
-      most = std::max(most / 2, fewest_points);
-  }
+  Pace pace(first_points, busy_work_items(session.info()));
+  for_each_batch(EqualItems{points}, pace, {stop, {}}, [&](std::size_t first, std::size_t count) {
+    return session.launch(kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points,
+                          device_params, materials, delta, emitters, irradiance, static_cast<cl_uint>(first),
+                          static_cast<cl_uint>(first + count), samples);
+  });
   return irradiance;
 }
 

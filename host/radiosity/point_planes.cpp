@@ -1,10 +1,17 @@
 #include "host/radiosity/point_planes.h"
+#include "host/error.h"
+#include <limits>
 #include <stdexcept>
 
 namespace pointgi {
 
 cl_uint plane_stride(std::size_t points) {
-  return static_cast<cl_uint>((points + FMM_LANES - 1) / FMM_LANES * FMM_LANES + FMM_LANES);
+  const std::size_t stride = (points + FMM_LANES - 1) / FMM_LANES * FMM_LANES + FMM_LANES;
+  if (stride > std::numeric_limits<cl_uint>::max())
+    throw Error(ErrorKind::memory, "radiosity: " + std::to_string(points) +
+                                       " points exchange light, and kernels count 4294967280 at most; use a coarser "
+                                       "spacing, or a smaller cloud");
+  return static_cast<cl_uint>(stride);
 }
 
 std::vector<cl_float> point_planes(View<ExchangePoint> points, cl_uint stride) {

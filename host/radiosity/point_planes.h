@@ -6,7 +6,8 @@
 
 namespace pointgi {
 
-/// Points padded to blocks of FMM_LANES, and a block more: a leaf's last block may begin at any point.
+/// Points padded to blocks of FMM_LANES, and a block more: a leaf's last block may begin at any point. Throws
+/// Error(memory) where kernels, which count points with 32 bits, cannot.
 cl_uint plane_stride(std::size_t points);
 
 /// Positions, normals and areas as seven planes, `stride` apart, zero behind the last point.

@@ -1,4 +1,5 @@
 #include "host/render/render.h"
+#include "host/cl/batches.h"
 #include "host/render/tile_renderer.h"
 #include <algorithm>
 #include <cfloat>
@@ -11,10 +12,8 @@ namespace {
 
 /// Rows of a band: enough for the EXR's blocks of 16, few enough that a picture 65536 wide stays small in memory.
 constexpr int band_rows = 16;
-/// A launch aims at this many seconds: short for a watchdog or a Ctrl-C, long against the cost of launching.
-constexpr double launch_seconds = 0.1;
-/// Pixels a row of the first launch, of which nothing is known yet: 8000 rays.
-constexpr int first_columns = 16;
+/// Pixels a row of the first launch, of which nothing is known yet: 8000 rays; and of any.
+constexpr std::size_t first_columns = 16, most_columns = 4096;
 
 enum Channel {
   c_r,
@@ -158,19 +157,19 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   const int width = window.x1 - window.x0, height = window.y1 - window.y0;
   RenderTotals totals;
   totals.of_object.resize(request.first_ids.size);
-  int most_columns = first_columns; // grows or shrinks towards launch_seconds
+  // Of the columns of a band; a pixel is a work-item a sample of a pass.
+  const std::size_t work_items = static_cast<std::size_t>(band_rows) * GRID_RAYS;
+  Pace pace(first_columns, (busy_work_items(session.info()) + work_items - 1) / work_items, most_columns);
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
     Band band{window.y0 + row, rows, width,
               std::vector<std::vector<float>>(channels, std::vector<float>(static_cast<std::size_t>(width) * rows))};
-    for (int column = 0; column < width;) {
-      const int columns = std::min(most_columns, width - column);
+    // All passes over a tile, and its film; the seconds of the longest launch.
+    const auto tile = [&](std::size_t first, std::size_t count) {
+      const int column = static_cast<int>(first), columns = static_cast<int>(count);
       double longest = 0.0;
       for (pg_uint sample = 0; sample < tiles.samples(); sample += GRID_RAYS) {
-        if (stop()) {
-          totals.interrupted = true;
-          return totals;
-        }
+        if (totals.interrupted = stop(); totals.interrupted) return longest;
         const TileSeconds seconds = tiles.launch(window.x0 + column, window.y0 + row, columns, rows, sample);
         totals.eye_seconds += seconds.eye;
         totals.device_seconds += seconds.all();
@@ -181,11 +180,11 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
       }
       resolve_tile(tiles.film(columns, rows), tiles.film_channels(), column, columns, request, tiles.samples(), band,
                    totals);
-      column += columns;
-      most_columns = longest < 0.5 * launch_seconds   ? std::min(most_columns * 2, 4096)
-                     : longest > 2.0 * launch_seconds ? std::max(most_columns / 2, 1)
-                                                      : most_columns;
-    }
+      return longest;
+    };
+    const LaunchControl control{[&] { return totals.interrupted; }, {}};
+    for_each_batch(EqualItems{static_cast<std::size_t>(width)}, pace, control, tile);
+    if (totals.interrupted) return totals;
     totals.lit = totals.lit || is_lit(band);
     take(band);
     totals.rows_done = row + rows;

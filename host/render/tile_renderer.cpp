@@ -13,18 +13,18 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
       irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field), photons_(photons) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
   const bool asks_lights = paths || shadow_rays; // without, splats that shine are still seen, and so is the sky
-  SceneFeatures features{asks_lights && !lighting.delta.empty(), !lighting.emitters.empty(),
+  SceneFeatures features{asks_lights ? lighting.light_types : 0u, !lighting.emitters.empty(),
                          asks_lights && lighting.has_environment, irradiance_ != nullptr, asks_lights};
   if (normal_field_ != nullptr) {
-    features.specular = true;
-    features.glass = lighting.has_type(MATERIAL_GLASS);
-    features.phong = lighting.has_type(MATERIAL_PHONG);
+    features.materials = lighting.material_types;
+    features.material_flags = lighting.flags;
     features.gather_k = photons_ != nullptr ? photons_->k : 0;
   }
   if (paths) {
     std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
     params_.most_bounces = paths->most_bounces;
   }
+  features = features_on(session.info(), features);
   const Program eye_rays = eye_rays_program(variant),
                 shade = paths ? path_program(variant, features, !paths->all) : shade_program(variant, features);
   eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");
@@ -37,10 +37,9 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
 
 TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint first_sample) {
   const auto width = static_cast<std::size_t>(columns), height = static_cast<std::size_t>(rows);
-  if (film_.size < width * height * film_channels()) {
-    film_ = session_.allocate<float>(width * height * film_channels());
-    hits_ = session_.allocate<EyeHits>(width * height);
-  }
+  // Each on its own: where the second is refused, the first may be larger than a smaller tile needs.
+  if (film_.size < width * height * film_channels()) film_ = session_.allocate<float>(width * height * film_channels());
+  if (hits_.size < width * height) hits_ = session_.allocate<EyeHits>(width * height);
   const auto parts = [](std::size_t whole, std::size_t size) { return (whole + size - 1) / size; };
   const auto pixels = [&](WorkGroup g) {
     return LaunchShape::grid(parts(width, g.size() / GRID_RAYS) * g.x, height * g.y, g.x, g.y);

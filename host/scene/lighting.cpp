@@ -12,36 +12,27 @@ void copy3(const Vector3d& from, float to[3]) {
     to[k] = static_cast<float>(from[k]);
 }
 
-/// Intensity of a point light in cube units, W/sr per side²: irradiance is this over the cube distance squared.
-Vector3d cube_intensity(const PointLight& light, const Frame& frame) {
-  return light.power_w / (4.0 * 3.14159265358979323846) / frame.side / frame.side;
+/// As the device has it, not yet scaled: of a light in the scene W/sr per side², so that irradiance is this over the
+/// distance in cubes squared.
+Vector3d cube_strength(const LightSettings& light, const Frame& frame) {
+  return light.is_far ? light.strength : light.strength / frame.side / frame.side;
 }
 
 RadianceScale choose_scale(const Scene& scene, const Frame& frame) {
   double largest = scene.environment.maxCoeff();
   for (const MaterialSettings& material : scene.materials)
     largest = std::max(largest, material.emission.maxCoeff());
-  for (const LightSettings& entry : scene.lights) {
-    if (const auto* point = std::get_if<PointLight>(&entry.light))
-      largest = std::max(largest, cube_intensity(*point, frame).maxCoeff());
-    else
-      largest = std::max(largest, std::get<DirectionalLight>(entry.light).irradiance.maxCoeff());
-  }
+  for (const LightSettings& light : scene.lights)
+    largest = std::max(largest, cube_strength(light, frame).maxCoeff());
   return {largest > 0.0 ? std::exp2(std::round(std::log2(largest))) : 1.0};
 }
 
-DeltaLight device_light(const LightSettings& entry, const Frame& frame, double scale) {
+DeltaLight device_light(const LightSettings& settings, const Frame& frame, double scale) {
   DeltaLight light{};
-  if (const auto* point = std::get_if<PointLight>(&entry.light)) {
-    light.type = LIGHT_POINT;
-    copy3((point->position - frame.origin) / frame.side, light.vector);
-    copy3(cube_intensity(*point, frame) / scale, light.strength);
-  } else {
-    const auto& directional = std::get<DirectionalLight>(entry.light);
-    light.type = LIGHT_DIRECTIONAL;
-    copy3(-directional.direction, light.vector);
-    copy3(directional.irradiance / scale, light.strength);
-  }
+  light.type = static_cast<pg_uint>(settings.type);
+  copy3(settings.is_far ? settings.vector : (settings.vector - frame.origin) / frame.side, light.vector);
+  copy3(cube_strength(settings, frame) / scale, light.strength);
+  light.sine2 = static_cast<float>(settings.sine2);
   return light;
 }
 
@@ -49,27 +40,18 @@ struct Axes {
   Vector3d right, up, forward;
 };
 
-pg_uint device_type(MaterialType type) {
-  switch (type) {
-  case MaterialType::mirror:
-    return MATERIAL_MIRROR;
-  case MaterialType::glass:
-    return MATERIAL_GLASS;
-  case MaterialType::phong:
-    return MATERIAL_PHONG;
-  default:
-    return MATERIAL_DIFFUSE;
-  }
-}
-
 Material device_material(const MaterialSettings& settings, const Frame& frame, double scale) {
   Material material{};
   copy3(settings.emission / scale, material.emission);
-  material.type = device_type(settings.type);
-  copy3(settings.type == MaterialType::mirror ? settings.reflectance : settings.specular, material.specular);
+  material.type = static_cast<pg_uint>(settings.type);
+  copy3(settings.specular, material.specular);
   material.exponent = static_cast<float>(settings.exponent);
   copy3(settings.absorption * frame.side, material.absorption);
   material.ior = static_cast<float>(settings.ior);
+  copy3(settings.eta, material.eta);
+  material.alpha = static_cast<float>(settings.alpha);
+  copy3(settings.extinction, material.extinction);
+  material.flags = settings.flags;
   return material;
 }
 
@@ -154,14 +136,24 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   const auto emitted = [&](std::size_t p) {
     return power[static_cast<std::size_t>(points[p].material)] * points[p].area;
   };
-  for (std::size_t p = 0; p < points.size; ++p)
-    result.types |= 1u << result.materials[static_cast<std::size_t>(points[p].material)].type;
+  for (std::size_t p = 0; p < points.size; ++p) {
+    const Material& material = result.materials[static_cast<std::size_t>(points[p].material)];
+    result.material_types |= 1u << material.type;
+    result.flags |= material.flags;
+  }
   for (std::size_t p = 0; p < points.size; ++p)
     if (emitted(p) > 0.0) result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
   accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
+  double all_emitted = 0.0;
+  for (const Emitter& e : result.emitters)
+    all_emitted += emitted(e.point);
+  for (std::size_t m = 0; m < scene.materials.size() && all_emitted > 0.0; ++m)
+    result.materials[m].emitter_density = static_cast<float>(power[m] / all_emitted);
   for (const LightSettings& entry : scene.lights) {
     const DeltaLight light = device_light(entry, frame, scale);
-    if (light.strength[0] + light.strength[1] + light.strength[2] > 0.0f) result.delta.push_back(light);
+    if (!(light.strength[0] + light.strength[1] + light.strength[2] > 0.0f)) continue;
+    result.delta.push_back(light);
+    result.light_types |= 1u << light.type;
   }
   accumulate_shares(result.delta, [&](const DeltaLight& l) {
     return luminance.dot(Vector3d(l.strength[0], l.strength[1], l.strength[2])) + 1e-30;

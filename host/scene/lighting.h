@@ -21,10 +21,12 @@ struct DeviceLighting {
   bool has_environment = false;
 
   bool has_light() const { return !delta.empty() || !emitters.empty() || has_environment; }
-  /// Whether some splat's material, not only some material, is of this type.
-  bool has_type(pg_uint type) const { return type < 32 && ((types >> type) & 1u) != 0; }
-  bool has_specular() const { return (types & ~(1u << MATERIAL_DIFFUSE)) != 0; }
-  pg_uint types = 0; ///< bit MATERIAL_...: splats of that type are there
+  /// Whether some splat's material, not only some material, has this flag (MATERIAL_...).
+  bool has_flag(pg_uint flag) const { return (flags & flag) != 0; }
+  bool has_specular() const { return has_flag(MATERIAL_SPECULAR); }
+  pg_uint material_types = 0; ///< bit MATERIAL_<ID>: splats of that kind are there
+  pg_uint light_types = 0;    ///< bit LIGHT_<ID>: lights of that kind are
+  pg_uint flags = 0;          ///< of the materials of all splats
 };
 
 /// `points` is the octree's point pool: emitters refer to it.

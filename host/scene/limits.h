@@ -31,6 +31,7 @@ inline constexpr IntegerRange max_depth{0, 256};
 inline constexpr IntegerRange order{2, 6};
 inline constexpr IntegerRange vmap_samples{1, 256};
 inline constexpr IntegerRange point_samples{0, 65536};
+inline constexpr IntegerRange light_samples = spp;
 inline constexpr IntegerRange photons{0, 100'000'000};
 inline constexpr IntegerRange gather_k{1, 1024};
 inline constexpr IntegerRange leaf_capacity{1, 4096};
@@ -47,9 +48,13 @@ inline constexpr NumberRange reflectance{0.0, 1.0, false, false, "from 0 to 1 (a
 inline constexpr NumberRange light{0.0, 1e30, false, false, "from 0 to 1e30 (light cannot be negative)"};
 inline constexpr NumberRange absorption{0.0, 1e18, false, false, "from 0 to 1e18"};
 inline constexpr NumberRange ior{0.0, 1e6, true, false, "> 0 and at most 1e6"};
+inline constexpr NumberRange roughness{0.0, 1.0, false, false, "from 0 (smooth) to 1"};
 inline constexpr NumberRange exponent{0.0, 1e6, false, false, "from 0 to 1e6"};
 inline constexpr NumberRange tolerance{0.0, 1.0, true, true, "> 0 and < 1"};
 inline constexpr NumberRange epsilon = tolerance;
+/// Four times coarser than a scene's epsilon, but not coarser than this: beyond it pairs of clusters that exchange a
+/// tenth of the light would not be divided, and what is drafted would look like another scene.
+inline constexpr double coarsest_draft_epsilon = 0.1;
 
 /// Sine of the angle below which two directions count as parallel: a camera's view and its up, a quad's edges.
 inline constexpr double parallel_sine = 1e-6;

@@ -1,3 +1,4 @@
+#include "host/lights/light_kind.h"
 #include "host/scene/load_sections.h"
 
 namespace pointgi {
@@ -5,23 +6,20 @@ namespace {
 
 const std::vector<std::string> no_common_keys;
 
-const std::vector<TypedKeys>& light_types() {
-  static const std::vector<TypedKeys> types = {
-      {"point", {"position", "power_w"}},
-      {"directional", {"direction", "irradiance"}},
-  };
+const std::vector<TypedKeys>& typed_keys() {
+  static const std::vector<TypedKeys> types = [] {
+    std::vector<TypedKeys> all;
+    for (const LightType type : light_types())
+      all.push_back({name_of(type), kind_of(type).keys});
+    return all;
+  }();
   return types;
 }
 
-PointLight load_point(const TableReader& table) {
-  return {table.need_vector3("position", limits::coordinate), table.need_vector3("power_w", limits::light)};
-}
-
-DirectionalLight load_directional(const TableReader& table) {
-  const Vector3d direction = table.need_vector3("direction", limits::coordinate);
-  if (direction.norm() < limits::length.low)
-    table.fail("direction", "expected the way the light travels, found a vector of no length");
-  return {direction.normalized(), table.need_vector3("irradiance", limits::light)};
+LightType type_called(const std::string& name) {
+  for (const LightType type : light_types())
+    if (name == name_of(type)) return type;
+  return LightType::point;
 }
 
 } // namespace
@@ -29,11 +27,10 @@ DirectionalLight load_directional(const TableReader& table) {
 std::vector<LightSettings> load_lights(const TableReader& root) {
   std::vector<LightSettings> lights;
   for (const TableReader& table : root.tables("light")) {
-    const std::string type = table.typed(no_common_keys, light_types());
-    if (type == "directional")
-      lights.push_back({load_directional(table), table.place()});
-    else
-      lights.push_back({load_point(table), table.place()});
+    LightSettings& light = lights.emplace_back();
+    light.type = type_called(table.typed(no_common_keys, typed_keys()));
+    light.place = table.place();
+    kind_of(light.type).load(table, light);
   }
   return lights;
 }

@@ -1,32 +1,23 @@
+#include "host/materials/material_kind.h"
 #include "host/scene/load_sections.h"
 
 namespace pointgi {
 namespace {
 
-const std::vector<TypedKeys>& material_types() {
-  static const std::vector<TypedKeys> types = {
-      {"diffuse", {"albedo", "colour_space", "emission"}},
-      {"mirror", {"reflectance"}},
-      {"glass", {"ior", "absorption"}},
-      {"phong", {"albedo", "colour_space", "emission", "specular", "exponent"}},
-  };
+const std::vector<TypedKeys>& typed_keys() {
+  static const std::vector<TypedKeys> types = [] {
+    std::vector<TypedKeys> all;
+    for (const MaterialType type : material_types())
+      all.push_back({name_of(type), kind_of(type).keys});
+    return all;
+  }();
   return types;
 }
 
 MaterialType type_called(const std::string& name) {
-  for (const MaterialType type : {MaterialType::mirror, MaterialType::glass, MaterialType::phong})
+  for (const MaterialType type : material_types())
     if (name == name_of(type)) return type;
   return MaterialType::diffuse;
-}
-
-/// What a surface gives back of the light that meets it, diffusely and specularly together, is at most all of it.
-void check_energy(const TableReader& table, const MaterialSettings& material) {
-  constexpr double rounding = 1e-9; // 0.7 + 0.3 written in decimals must pass
-  if (!material.albedo || material.type != MaterialType::phong) return;
-  const double most = (*material.albedo + material.specular).maxCoeff();
-  if (most > 1.0 + rounding)
-    table.fail("specular", "albedo + specular is above 1 in a channel, expected at most 1 (above 1 it would create "
-                           "energy)");
 }
 
 MaterialSettings load_material(TableReader table, std::vector<std::string>& warnings) {
@@ -34,24 +25,14 @@ MaterialSettings load_material(TableReader table, std::vector<std::string>& warn
   // Keys are reported under the material's name once it is known: "material.glass.ior" is what --set understands.
   if (const toml::node* name = table.find("name"); name != nullptr && name->is_string() && table.text("name"))
     table.rename("material." + *table.text("name"));
-  material.type = type_called(table.typed({"name"}, material_types()));
+  material.type = type_called(table.typed({"name"}, typed_keys()));
   material.name = table.need_text("name", "a name that clouds and shapes refer to");
   material.place = table.place();
-  material.albedo = table.vector3("albedo", limits::reflectance);
-  if (const auto emission = table.vector3("emission", limits::light)) material.emission = *emission;
-  if (const auto reflectance = table.vector3("reflectance", limits::reflectance)) material.reflectance = *reflectance;
-  if (const auto ior = table.number("ior", limits::ior)) material.ior = *ior;
-  if (const auto absorption = table.vector3("absorption", limits::absorption)) material.absorption = *absorption;
-  if (const auto specular = table.vector3("specular", limits::reflectance)) material.specular = *specular;
-  if (const auto exponent = table.number("exponent", limits::exponent)) material.exponent = *exponent;
-  if (const auto space = table.choice("colour_space", {"srgb", "linear"})) {
-    material.colour_space = *space == "srgb" ? ColourSpace::srgb : ColourSpace::linear;
-    if (material.albedo)
-      warnings.push_back(table.place("colour_space").text() + ": material " + pointgi::quoted(material.name) +
-                         ": colour_space has no effect: it is that of the points' colours, but this material has an "
-                         "albedo of its own, which is linear RGB; remove one of the two.");
-  }
-  check_energy(table, material);
+  kind_of(material.type).load(table, material);
+  if (table.has("colour_space") && material.albedo)
+    warnings.push_back(table.place("colour_space").text() + ": material " + pointgi::quoted(material.name) +
+                       ": colour_space has no effect: it is that of the points' colours, but this material has an "
+                       "albedo of its own, which is linear RGB; remove one of the two.");
   return material;
 }
 

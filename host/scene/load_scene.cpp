@@ -37,10 +37,7 @@ void check_version(const TableReader& root) {
 }
 
 bool shines(const Scene& scene) {
-  const auto lit = [](const LightSettings& light) {
-    if (const auto* point = std::get_if<PointLight>(&light.light)) return point->power_w.maxCoeff() > 0;
-    return std::get<DirectionalLight>(light.light).irradiance.maxCoeff() > 0;
-  };
+  const auto lit = [](const LightSettings& light) { return light.strength.maxCoeff() > 0; };
   std::unordered_set<std::string> emitting;
   for (const MaterialSettings& material : scene.materials)
     if (material.emission.maxCoeff() > 0) emitting.insert(material.name);

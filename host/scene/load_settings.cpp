@@ -1,6 +1,7 @@
 /// The sections that stand once in a scene: [render], [camera], [radiosity], [caustics], [octree], [traversal],
 /// [environment].
 #include "host/scene/load_sections.h"
+#include "host/scene/radiosity_words.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -74,10 +75,12 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   const std::optional<TableReader> table = root.table("radiosity");
   if (!table) return;
-  table->allow_only(
-      {"method", "order", "vmap_samples", "point_samples", "epsilon", "tolerance", "vmap", "direct_light"});
+  std::vector<std::string> keys = radiosity_method_keys();
+  keys.insert(keys.begin(), "method");
+  keys.insert(keys.end(), {"direct_light", "light_samples"});
+  table->allow_only(keys);
   radiosity.place = table->place();
-  if (const auto method = table->choice("method", {"fmm", "none", "direct"})) radiosity.method = *method;
+  if (const auto method = table->choice("method", radiosity_method_words())) radiosity.method = *method;
   if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
   if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))
     radiosity.vmap_samples = static_cast<int>(*samples);
@@ -87,6 +90,8 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
+  if (const auto samples = table->integer("light_samples", limits::light_samples))
+    radiosity.light_samples = static_cast<int>(*samples);
 }
 
 void load_caustics(const TableReader& root, CausticSettings& caustics) {

@@ -7,24 +7,6 @@ std::string SourcePlace::text() const {
   return file + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
-const char* name_of(MaterialType type) {
-  switch (type) {
-  case MaterialType::diffuse:
-    return "diffuse";
-  case MaterialType::mirror:
-    return "mirror";
-  case MaterialType::glass:
-    return "glass";
-  case MaterialType::phong:
-    return "phong";
-  }
-  return "unknown";
-}
-
-bool exchanges_light(const MaterialSettings& material) {
-  return material.type == MaterialType::diffuse || material.type == MaterialType::phong;
-}
-
 const char* name_of(PointOrder order) {
   return order == PointOrder::morton ? "morton" : "hilbert";
 }

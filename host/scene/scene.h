@@ -2,6 +2,7 @@
 /// The scene as the file describes it, in world units and doubles: nothing loaded, nothing sampled yet.
 #include "host/cloud/complete.h"
 #include "octree/build/curve.h"
+#include "shared/render_types.h"
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
@@ -43,7 +44,9 @@ struct CameraSettings {
   SourcePlace place;
 };
 
-enum class MaterialType { diffuse, mirror, glass, phong };
+#define MATERIAL_TYPE(ID, name) name = MATERIAL_##ID,
+enum class MaterialType : pg_uint { MATERIAL_KINDS(MATERIAL_TYPE) };
+#undef MATERIAL_TYPE
 const char* name_of(MaterialType type);
 
 struct MaterialSettings {
@@ -51,11 +54,13 @@ struct MaterialSettings {
   MaterialType type = MaterialType::diffuse;
   std::optional<Vector3d> albedo;               ///< always linear; absent: the points' colours
   Vector3d emission{0, 0, 0};                   ///< radiance [W/m²/sr] of the front side
-  Vector3d reflectance{1, 1, 1};                ///< mirror
-  double ior = 1.5;                             ///< glass
-  Vector3d absorption{0, 0, 0};                 ///< glass, 1/length
-  Vector3d specular{0, 0, 0};                   ///< phong
-  double exponent = 1.0;                        ///< phong
+  pg_uint flags = 0;                            ///< MATERIAL_... of shared/material_kinds.h
+  Vector3d specular{0, 0, 0};                   ///< reflectance of the specular part (Material::specular)
+  double exponent = 1.0;                        ///< of a Phong lobe
+  double ior = 1.5;                             ///< of glass
+  Vector3d absorption{0, 0, 0};                 ///< of glass, 1/length
+  Vector3d eta{0, 0, 0}, extinction{0, 0, 0};   ///< of a conductor: complex index of refraction; 0: `specular` instead
+  double alpha = 0.0;                           ///< of a conductor: width of the GGX distribution of normals
   ColourSpace colour_space = ColourSpace::srgb; ///< of the points' colours
   SourcePlace place;
 };
@@ -108,16 +113,17 @@ struct ShapeSettings {
   SourcePlace place;
 };
 
-struct PointLight {
-  Vector3d position;
-  Vector3d power_w; ///< W; intensity is power_w / 4pi
-};
-struct DirectionalLight {
-  Vector3d direction;  ///< the way the light travels; unit after parsing
-  Vector3d irradiance; ///< W/m² on a surface facing it
-};
+#define LIGHT_TYPE(ID, name) name = LIGHT_##ID,
+enum class LightType : pg_uint { LIGHT_KINDS(LIGHT_TYPE) };
+#undef LIGHT_TYPE
+const char* name_of(LightType type);
+
 struct LightSettings {
-  std::variant<PointLight, DirectionalLight> light;
+  LightType type = LightType::point;
+  bool is_far = false;        ///< parallel light from outside the scene
+  Vector3d vector{0, 0, 0};   ///< its position; of a far light the unit vector towards it
+  Vector3d strength{0, 0, 0}; ///< intensity [W/sr]; of a far light the irradiance [W/m²] of a surface that faces it
+  double sine2 = 0.0;         ///< of a far light: sine squared of half the angle under which it is seen
   SourcePlace place;
 };
 
@@ -130,7 +136,8 @@ struct RadiositySettings {
   double tolerance = 1e-3;
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
-  std::optional<SourcePlace> place;         ///< set when the file has the section
+  std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs
+  std::optional<SourcePlace> place; ///< set when the file has the section
 };
 struct CausticSettings {
   long long photons = 400000;

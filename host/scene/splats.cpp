@@ -22,10 +22,10 @@ std::uint32_t index_of(const Scene& scene, const std::string& name) {
   return static_cast<std::uint32_t>(at - scene.materials.begin());
 }
 
-/// Diffuse reflectance of each point: the material's albedo, else the points' colours, else grey; of a Phong material
-/// no more than its lobe leaves; of mirrors and glass none.
+/// Diffuse reflectance of each point: the material's albedo, else the points' colours, else grey; no more than
+/// a specular part leaves; none of what does not reflect diffusely.
 void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
-  if (material.type == MaterialType::mirror || material.type == MaterialType::glass) {
+  if (!exchanges_light(material)) {
     cloud.colour.assign(cloud.size(), Eigen::Vector3f::Zero());
     return;
   }

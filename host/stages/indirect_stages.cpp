@@ -4,21 +4,29 @@
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
 #include <algorithm>
+#include <stdexcept>
 
 namespace pointgi {
 
 namespace {
 
-/// Estimates of the direct light of each point. Lights that are points or far away need one, since nothing of them is
-/// chosen at random while they are few; what other estimates scatter, the many senders of a receiver average out.
-constexpr unsigned light_samples = 16, sure_lights = 4;
+/// Estimates of the direct light of a point that is seen only by what it sends on: the many senders of a receiver
+/// average out what the estimates of each scatter.
+constexpr int indirect_light_samples = 16;
+/// Lights that are points or far away need one, since nothing of them is chosen at random while they are few.
+constexpr std::size_t sure_lights = 4;
 /// Of light that enters besides, however little.
 constexpr double coarsest_tolerance = 0.1;
 
-unsigned samples_for(const DeviceLighting& lighting, bool with_emitters) {
+unsigned samples_for(const IndirectRequest& request, bool with_emitters) {
+  const DeviceLighting& lighting = request.lighting;
   const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
                     lighting.delta.size() <= sure_lights;
-  return sure ? 1 : light_samples;
+  if (sure) return 1;
+  const Scene& scene = request.scene;
+  // Light that the picture shows at the points has the samples of a pixel.
+  const int unless_told = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
+  return static_cast<unsigned>(scene.radiosity.light_samples.value_or(unless_told));
 }
 
 /// Progress of a stage, and an end on request, both at every launch of the device.
@@ -102,7 +110,7 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
 }
 
 void require_possible_radiosity(const Scene& scene) {
-  if (scene.radiosity.place && scene.radiosity.method == "none" && direct_light_by_radiosity(scene))
+  if (scene.radiosity.place && radiosity_method_of(scene) == nullptr && direct_light_by_radiosity(scene))
     throw Error(ErrorKind::input,
                 scene.radiosity.place->text() +
                     ": [radiosity] direct_light = \"radiosity\" wants a method that exchanges light, but method is "
@@ -117,7 +125,7 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
   }
   stages.start("normals");
   const auto slopes = fit_normal_field(points, [&](const Splat& splat) {
-    return lighting.materials[static_cast<std::size_t>(splat.material)].type != MATERIAL_DIFFUSE;
+    return (lighting.materials[static_cast<std::size_t>(splat.material)].flags & MATERIAL_SPECULAR) != 0;
   });
   std::vector<cl_float4> texels(slopes.size());
   for (std::size_t i = 0; i < slopes.size(); ++i)
@@ -129,7 +137,7 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
 
 std::string reason_against_radiosity(const IndirectRequest& request) {
   if (request.by_paths) return "the path tracer makes the picture";
-  if (request.scene.radiosity.method == "none") return "radiosity.method = \"none\": direct light only";
+  if (radiosity_method_of(request.scene) == nullptr) return "radiosity.method = \"none\": direct light only";
   if (!request.lighting.has_light()) return "the scene has no light and no emission";
   if (!has_reflectors(request.scene, request.points)) return "nothing in the scene is diffuse with an albedo above 0";
   return {};
@@ -150,27 +158,23 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
 std::vector<float> direct_light(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                 bool with_emitters) {
   const std::size_t points = request.points.size;
-  return session.download(
-      direct_irradiance_of_points(session, pools, request.variant, request.lighting, request.frame.side, points,
-                                  samples_for(request.lighting, with_emitters), with_emitters, [] { return false; }),
-      3 * points);
+  return session.download(direct_irradiance_of_points(session, pools, request.variant, request.lighting,
+                                                      request.frame.side, points, samples_for(request, with_emitters),
+                                                      with_emitters, [] { return false; }),
+                          3 * points);
 }
 
 ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging) {
   return {pools, request.variant, request.points, exchanging, request.frame.side, request.scene.render.seed};
 }
 
-/// By the links of the light's map, or where there is none by a ray a pair.
-RadiosityField solve(Session& session, const ExchangeScene& exchange, const IndirectLight& light,
-                     const EnteringLight& entering, const RadiositySettings& settings, const WorkReport& report) {
-  return light.map ? solve_radiosity_field(session, *light.map, entering, settings, report)
-                   : solve_radiosity_directly(session, exchange, entering, settings, report);
-}
-
-RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
-                       IndirectLight& light, StageLog& stages) {
-  stages.start("fmm");
+/// What enters first: lights, what shines, and photons by way of specular surfaces.
+RadiosityField run_exchange(Session& session, const RadiosityMethod& method, std::optional<RadiosityMap> map,
+                            const ExchangeScene& exchange, const IndirectRequest& request, IndirectLight& light,
+                            StageLog& stages) {
+  stages.start(method.name);
   StageWatch watch(session);
+  const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
   light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
@@ -178,14 +182,14 @@ RadiosityField run_fmm(Session& session, const ExchangeScene& exchange, const In
   std::vector<float> entering = light.direct;
   for (std::size_t i = 0; i < request.caustic.size; ++i)
     entering[i] += request.caustic[i];
-  RadiosityField field = solve(session, exchange, light, {entering, emitted}, request.scene.radiosity, watch.report());
+  light.prepared = method.prepare(session, exchange, settings, std::move(map), watch.report());
+  RadiosityField field = light.prepared->solve({entering, emitted}, settings.tolerance, watch.report());
   stages.finish(request.points.size, "points");
   return field;
 }
 
 void report_solution(const IndirectLight& light, const Solution& solution) {
-  log_info("radiosity: {}, {} applies of the operator, residual {:.2g}",
-           light.map ? std::to_string(light.map->vmap.links.size()) + " links" : "a ray a pair", solution.applies,
+  log_info("radiosity: {}, {} applies of the operator, residual {:.2g}", light.prepared->summary(), solution.applies,
            solution.residual);
   if (const std::string complaint = complaint_of(solution); !complaint.empty()) log_warning("radiosity: {}", complaint);
 }
@@ -198,48 +202,52 @@ std::vector<float> direct_light_of_points(Session& session, const DevicePools& p
   return direct_light(session, pools, request, true);
 }
 
+const RadiosityMethod* radiosity_method_of(const Scene& scene) {
+  return radiosity_method(scene.radiosity.method);
+}
+
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages) {
   IndirectLight light;
   const RadiositySettings& settings = request.scene.radiosity;
+  const RadiosityMethod* method = radiosity_method_of(request.scene);
   if (const std::string reason = reason_against_radiosity(request); !reason.empty()) {
-    if (settings.place && settings.method != "none")
+    if (settings.place && method != nullptr)
       log_warning("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
     stages.skip("vmap", reason);
-    stages.skip("fmm", reason);
+    stages.skip(method != nullptr ? method->name : radiosity_methods().front()->name, reason);
     return light;
   }
   const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
   const ExchangeScene exchange = exchange_scene(pools, request, exchanging);
-  if (settings.method == "direct") {
-    stages.skip("vmap", "radiosity.method = \"direct\" traces a ray for every pair of points");
-  } else {
-    light.map = run_vmap(session, exchange, request, stages);
-    light.links = light.map->vmap.statistics;
-  }
-  RadiosityField field = run_fmm(session, exchange, request, light, stages);
-  light.counts = field.counts;
-  light.rays = field.rays;
+  std::optional<RadiosityMap> map;
+  if (method->without_vmap != nullptr)
+    stages.skip("vmap", method->without_vmap);
+  else
+    map = run_vmap(session, exchange, request, stages);
+  RadiosityField field = run_exchange(session, *method, std::move(map), exchange, request, light, stages);
+  light.rays = light.prepared->rays();
+  light.statistics = light.prepared->statistics();
   light.from_surfaces = std::move(field.irradiance);
   light.solution = std::move(field.solution);
   report_solution(light, light.solution);
   return light;
 }
 
-std::vector<float> add_exchange(Session& session, const DevicePools& pools, const IndirectRequest& request,
-                                View<float> entering, double share, IndirectLight& light, StageLog& stages) {
-  stages.start("fmm");
+std::vector<float> add_exchange(Session& session, const IndirectRequest& request, View<float> entering, double share,
+                                IndirectLight& light, StageLog& stages) {
+  const RadiosityMethod& method = *radiosity_method_of(request.scene);
+  if (!method.is_linear)
+    throw std::logic_error("radiosity: light added to what a method that is not linear has solved");
+  stages.start(method.name);
   StageWatch watch(session);
-  const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
-  RadiositySettings settings = request.scene.radiosity;
-  settings.tolerance = std::min(settings.tolerance / share, coarsest_tolerance);
-  RadiosityField field =
-      solve(session, exchange_scene(pools, request, exchanging), light, {entering, {}}, settings, watch.report());
+  const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
+  RadiosityField field = light.prepared->solve({entering, {}}, tolerance, watch.report());
   for (std::size_t i = 0; i < light.from_surfaces.size(); ++i)
     light.from_surfaces[i] += field.irradiance[i];
   light.solution.applies += field.solution.applies;
   if (field.solution.end != SolveEnd::converged) light.solution.end = field.solution.end;
-  if (!light.map) light.rays += field.rays; // a ray a pair, again
+  light.rays = light.prepared->rays();
   stages.finish(request.points.size, "points");
   report_solution(light, field.solution);
   return std::move(field.irradiance);

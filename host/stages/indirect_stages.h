@@ -1,6 +1,6 @@
 #pragma once
 /// The stages of indirect light, between the octree and the picture: which the scene needs, and what they found.
-#include "host/radiosity/radiosity.h"
+#include "host/radiosity/method.h"
 #include "host/scene/frame.h"
 #include "host/stages/stages.h"
 #include <functional>
@@ -13,11 +13,10 @@ namespace pointgi {
 struct IndirectLight {
   std::vector<float> from_surfaces; ///< H(B)
   std::vector<float> direct;        ///< from lights; from splats that shine, too, unless they take part in the exchange
-  LinkStatistics links;
-  ExchangeCounts counts;
   Solution solution;
-  std::uint64_t rays = 0;          ///< that decided which points see each other
-  std::optional<RadiosityMap> map; ///< by which it is solved; absent: directly
+  std::uint64_t rays = 0; ///< that decided which points see each other
+  std::vector<MethodStatistic> statistics;
+  std::unique_ptr<PreparedRadiosity> prepared; ///< by which it was solved, for light that enters besides
 };
 
 /// The scene as the stages before have left it.
@@ -32,16 +31,20 @@ struct IndirectRequest {
                          ///< on; empty: none
 };
 
-/// Runs `vmap` and `fmm` where the scene needs them, and says of each stage that does not run why. Throws
-/// Error(interrupted) when the run (host/run.h) is to stop.
+/// The method that the scene asks for; nullptr: light is not exchanged.
+const RadiosityMethod* radiosity_method_of(const Scene& scene);
+
+/// Runs `vmap` and the stage of the scene's method, which has the method's name, where the scene needs them, and says
+/// of each stage that does not run why. Throws Error(interrupted) when the run (host/run.h) is to stop.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 
-/// The stage `fmm` once more, for light that enters besides: what surfaces make of `entering` ([points x 3] as
-/// IndirectLight, irradiance) is added to `light`, of which run_indirect_stages has found the rest, and returned.
-/// `share`, of its power in what entered first, tells how accurate it has to be. Throws as run_indirect_stages.
-std::vector<float> add_exchange(Session& session, const DevicePools& pools, const IndirectRequest& request,
-                                View<float> entering, double share, IndirectLight& light, StageLog& stages);
+/// The stage of the method once more, by what the first run has prepared, for light that enters besides: what surfaces
+/// make of `entering` ([points x 3] as IndirectLight, irradiance) is added to `light`, of which run_indirect_stages has
+/// found the rest, and returned. `share`, of its power in what entered first, tells how accurate it has to be. Throws
+/// as run_indirect_stages.
+std::vector<float> add_exchange(Session& session, const IndirectRequest& request, View<float> entering, double share,
+                                IndirectLight& light, StageLog& stages);
 
 /// Of each material, whether its splats send and receive diffuse light.
 std::vector<std::uint8_t> exchanging_materials(const Scene& scene);
@@ -68,7 +71,7 @@ double power_of(View<float> radiosity, View<Splat> points);
 /// pi L_e: radiosity that each point shines with, [points x 3] as IndirectLight.
 std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points);
 
-/// Why vmap and fmm do not run, in a few words; empty when they do: the scene has light, and surfaces that send each
+/// Why light is not exchanged, in a few words; empty when it is: the scene has light, and surfaces that send each
 /// other some of it.
 std::string reason_against_radiosity(const IndirectRequest& request);
 

@@ -30,7 +30,7 @@ void add_rounds(Session& session, const DevicePools& pools, const IndirectReques
     if (!request.scene.caustics.feedback) return;
     share = first > 0.0 ? reflected_power({entering}) / first : 0.0;
     if (share < least_share) return;
-    const std::vector<float> passed_on = add_exchange(session, pools, request, entering, share, indirect, stages);
+    const std::vector<float> passed_on = add_exchange(session, request, entering, share, indirect, stages);
     sent = reflected_radiosity(request, {entering, passed_on});
   }
   log_warning("caustics: after {} rounds between surfaces and mirrors, {:.1f} % of the light still goes on; it is "
@@ -58,10 +58,11 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
     wanted.caustic = caustic;
   }
   light.indirect = run_indirect_stages(session, pools, wanted, stages);
+  if (!settings.feedback || !settings.indirect) light.indirect.prepared.reset(); // no light will enter besides
   if (!photons_first) send_photons();
   if (settings.indirect && caustics.ledger && !light.indirect.from_surfaces.empty())
     add_rounds(session, pools, wanted, light, caustics, stages);
-  light.indirect.map.reset();
+  light.indirect.prepared.reset();
   light.photons = upload_caustics(session, caustics, request, stages);
   light.ledger = caustics.ledger;
   return light;

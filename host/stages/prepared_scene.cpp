@@ -1,6 +1,7 @@
 #include "host/stages/prepared_scene.h"
 #include "host/passes/build_pools.h"
 #include "host/run.h"
+#include "host/scene/limits.h"
 #include <algorithm>
 #include <cmath>
 
@@ -52,7 +53,14 @@ void apply_quality(const std::string& quality, Scene& scene, bool samples_given)
   const bool draft = quality == "draft";
   if (!samples_given)
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
-  scene.radiosity.epsilon = std::min(1.0, scene.radiosity.epsilon * (draft ? 4.0 : 0.5));
+  double& epsilon = scene.radiosity.epsilon;
+  epsilon = draft ? std::max(epsilon, std::min(4.0 * epsilon, limits::coarsest_draft_epsilon)) : 0.5 * epsilon;
+}
+
+void apply_bake_quality(const std::string& quality, Scene& scene) {
+  apply_quality(quality, scene);
+  if (!scene.radiosity.light_samples)
+    scene.radiosity.light_samples = quality == "draft" ? 16 : quality == "high" ? 256 : 64;
 }
 
 } // namespace pointgi

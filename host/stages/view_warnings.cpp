@@ -1,4 +1,5 @@
 #include "host/stages/view_warnings.h"
+#include "host/lights/light_kind.h"
 #include "host/run.h"
 #include "host/scene/objects.h"
 #include <algorithm>
@@ -12,10 +13,8 @@ std::string text(const Vector3d& p) {
 }
 
 std::string place_of(const LightSettings& light) {
-  if (const auto* point = std::get_if<PointLight>(&light.light))
-    return "the point light at " + text(point->position) + " may lie inside or behind something";
-  return "the directional light of direction " + text(std::get<DirectionalLight>(light.light).direction) +
-         " (the way that its light travels) may meet backs, or something that stands before all else";
+  return description_of(light) + (light.is_far ? " may meet backs, or something that stands before all else"
+                                               : " may lie inside or behind something");
 }
 
 /// What may keep the light away, of the lights that the scene has: the first of each kind speaks for the others.
@@ -60,7 +59,7 @@ std::string advice_on_backs(const RenderTotals& totals, const Scene& scene) {
 bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedScene& ready) {
   const DeviceLighting& lighting = ready.lighting;
   const PathSupply supply{has_reflectors(scene, points_of(ready.pools)), lighting.has_specular(),
-                          lighting.has_type(MATERIAL_PHONG), !lighting.emitters.empty() || lighting.has_environment,
+                          lighting.has_flag(MATERIAL_HAS_LOBE), !lighting.emitters.empty() || lighting.has_environment,
                           !lighting.delta.empty()};
   const std::string reason = why_no_path(list, scene.render.max_depth, supply);
   if (reason.empty()) return false;

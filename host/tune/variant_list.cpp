@@ -127,6 +127,31 @@ DeviceInfo ideal_device(bool cpu) {
   return info;
 }
 
+namespace {
+
+/// What features_on() makes of any scene's picture where the device is no CPU.
+std::vector<SceneFeatures> gpu_picture_features() {
+  const auto with_materials = [](SceneFeatures features) {
+    features.materials = all_materials;
+    features.material_flags = all_material_flags;
+    return features;
+  };
+  std::vector<SceneFeatures> sets{{}, with_materials({})};
+  for (const SceneFeatures& light :
+       {SceneFeatures{all_lights, true, true, false}, SceneFeatures{all_lights, true, true, true},
+        SceneFeatures{0, true, false, true, false}}) {
+    sets.push_back(light);
+    SceneFeatures specular = with_materials(light);
+    for (const unsigned k : {0u, 64u, 512u, 1024u}) {
+      specular.gather_k = k;
+      sets.push_back(specular);
+    }
+  }
+  return sets;
+}
+
+} // namespace
+
 std::vector<ProgramUse> all_programs() {
   std::vector<TraversalVariant> variants = all_variants();
   for (TraversalVariant v : all_variants())
@@ -135,15 +160,13 @@ std::vector<ProgramUse> all_programs() {
       variants.push_back(v);
     }
   std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true}};
-  // Not for GPUs yet: their vectors of 8 lanes in arrays are more than a stack frame should be.
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl"})
-    uses.push_back({fmm_program(file), true, false});
-  // Nor gathering of photons, whose candidates stand in private memory.
+    uses.push_back({fmm_program(file), true, true});
   for (const unsigned k : {64u, 512u, 1024u})
     for (const Program& program :
          {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})
-      uses.push_back({program, true, false});
+      uses.push_back({program, true, true});
   std::map<std::string, std::size_t> known;
   const auto add = [&](const Program& program, bool cpu, bool gpu) {
     const auto [at, is_new] = known.emplace(program.file + "\n" + program.options, uses.size());
@@ -151,10 +174,9 @@ std::vector<ProgramUse> all_programs() {
     uses[at->second].cpu |= cpu;
     uses[at->second].gpu |= gpu;
   };
-  const SceneFeatures diffuse{true, true, true, true}, without_shadow_rays{false, true, false, true, false};
-  const SceneFeatures everything{true, true, true, true, true, true, true, true};
-  const SceneFeatures traced{true, true, true, false, true, true, true, true}; // by paths
-  const SceneFeatures lit{false, false, false, false, true, true, true, true}; // by photons
+  const SceneFeatures everything{all_lights, true, true, true, true, all_materials, all_material_flags};
+  const SceneFeatures traced{all_lights,        true, true, false, true, all_materials,
+                             all_material_flags}; // by paths, photons
   for (const TraversalVariant& v : variants) {
     const bool cpu = why_not(v, ideal_device(true)).empty(), gpu = why_not(v, ideal_device(false)).empty();
     const bool usual_walk = build_options(v) == build_options(plain_variant(v.form)) && !v.fast_math;
@@ -163,24 +185,29 @@ std::vector<ProgramUse> all_programs() {
     add(eye_rays_program(v), cpu, gpu);
     if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
     if (usual_group) add(shade_program(v, {}), cpu, gpu);
-    add(direct_irradiance_program(v, {true, true, true}), cpu, gpu);
+    add(direct_irradiance_program(v, {all_lights, true, true}), cpu, gpu);
+    if (usual_walk) add(direct_irradiance_program(v, {all_lights, false, true}), cpu, gpu);
     add(specular_rays_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
     add(path_program(v, traced, true), cpu, gpu);
-    add(trace_photons_program(v, lit, PhotonStart::aimed), cpu, gpu);
+    add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);
     if (!usual_walk || !usual_group) continue;
-    add(shade_program(v, diffuse), cpu, gpu);
-    add(shade_program(v, without_shadow_rays), cpu, gpu);
-    SceneFeatures caustics = everything;
-    for (const unsigned k : {64u, 512u, 1024u}) {
-      caustics.gather_k = k;
-      add(shade_program(v, caustics), cpu, false);
-    }
-    add(path_program(v, {true, true, true}, true), cpu, gpu);
-    add(trace_photons_program(v, lit, PhotonStart::equal_power), cpu, gpu);
-    add(trace_photons_program(v, lit, PhotonStart::from_surfaces), cpu, gpu);
+    for (const SceneFeatures& features : gpu_picture_features())
+      add(shade_program(v, features), cpu, gpu);
+    for (const bool some_paths : {false, true})
+      for (const bool specular : {false, true}) {
+        SceneFeatures features = traced;
+        if (!specular) features.materials = features.material_flags = 0;
+        add(path_program(v, features, some_paths), cpu, gpu);
+      }
+    for (const PhotonStart start : {PhotonStart::aimed, PhotonStart::equal_power, PhotonStart::from_surfaces})
+      for (const bool from_lights : {false, true}) { // or from emitting splats and the environment alone
+        SceneFeatures features = traced;
+        if (!from_lights) features.lights = 0, features.emitters = features.environment = false;
+        add(trace_photons_program(v, features, start), cpu, gpu);
+      }
   }
   return uses;
 }

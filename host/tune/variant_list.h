@@ -40,8 +40,9 @@ struct ProgramUse {
 };
 
 /// Distinct programs, those of the tests among them: every walk, absolute delta included, with no scene feature and
-/// with all of them; every work-group and every choice of features with the usual walks only, for one does not hang on
-/// the other and all of their combinations would be compiled for a quarter of an hour.
+/// with all of them; every work-group with the usual walks only, for one does not depend on the other and all of their
+/// combinations would be compiled for a quarter of an hour. With the usual walk of each form and the usual work-group,
+/// all that any scene asks a GPU for (features_on()): `gpu` is what is built there, not what is known to run well.
 std::vector<ProgramUse> all_programs();
 
 /// A device of this kind that lacks nothing, to ask what is valid without a device.

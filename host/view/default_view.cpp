@@ -160,7 +160,12 @@ void choose_lights(Scene& scene) {
   const Vector3d back = (scene.camera.position - scene.camera.look_at).normalized(), up = up_of(scene);
   const Vector3d right = up.cross(back).normalized();
   const Vector3d towards = (-0.55 * right + 0.7 * up + 0.75 * back).normalized();
-  scene.lights = {{DirectionalLight{-towards, Vector3d(2.0, 1.95, 1.85)}, {}}};
+  LightSettings key;
+  key.type = LightType::directional;
+  key.is_far = true;
+  key.vector = towards;
+  key.strength = Vector3d(2.0, 1.95, 1.85);
+  scene.lights = {key};
   scene.environment = Vector3d(0.20, 0.215, 0.245);
 }
 

@@ -1,11 +1,16 @@
-/* Light that reaches a surface straight from its source, by shadow rays.
- *   HAS_DELTA_LIGHTS, HAS_EMITTERS, HAS_ENVIRONMENT  defined only where the scene has such lights */
-#include "materials/phong.cl"
-#include "lib/sampling.cl"
-#include "traverse/traversal.cl"
+/* Light that reaches a surface straight from its source, by shadow rays: the kinds of light that are compiled in.
+ *   HAS_DELTA_LIGHTS  the scene has a [[light]]
+ *   WITH_LIGHT_<ID>   of each kind of shared/light_kinds.h, where HAS_DELTA_LIGHTS: 1 where the scene has it, else 0
+ *   HAS_EMITTERS      some splats may shine
+ *   HAS_ENVIRONMENT   the environment may shine
+ * On CPU devices these stand only where the scene has such lights; other devices have few programs for all scenes. */
+#include "lights/directional.cl"
+#include "lights/emitter.cl"
+#include "lights/point.cl"
+#include "lights/sky.cl"
+#include "materials/materials.cl"
 
-/* Up to this many point and directional lights are all asked for every ray; of more, one, drawn in proportion to its
- * strength. */
+/* Up to this many [[light]]s are all asked for every ray; of more, one, drawn in proportion to its strength. */
 #define ALL_DELTA_LIGHTS 4u
 
 typedef struct Lights {
@@ -15,38 +20,27 @@ typedef struct Lights {
   const __global Emitter* emitters;
 } Lights;
 
-/* Index of the first entry whose cumulative share exceeds u, for entries `stride` floats apart. */
-static inline uint pick(const __global float* cumulative, uint stride, uint count, float u) {
-  uint low = 0u, high = count - 1u;
-  while (low < high) {
-    const uint middle = (low + high) / 2u;
-    if (cumulative[middle * stride] > u)
-      high = middle;
-    else
-      low = middle + 1u;
-  }
-  return low;
-}
+/* The surface that is lit, as its viewer sees it: what the lobe of its material needs. */
+typedef struct Viewed {
+  float3 direction;           /* of the ray that has met the surface */
+  float specular_probability; /* with which that ray goes on by the lobe */
+} Viewed;
 
-/* A place or direction from which light may come, and what it adds to the irradiance when nothing is in between. */
-typedef struct LightSample {
-  float3 towards; /* unit */
-  float distance;
-  float3 irradiance;
-  float3 normal; /* of the emitting disc; 0 where the light is none, as its radius */
-  float radius;
-} LightSample;
+static inline Viewed viewed_by(float3 direction, float specular_probability) {
+  const Viewed viewed = {direction, specular_probability};
+  return viewed;
+}
 
 /* Rays off a surface start a little behind it: where two walls meet, rounding may put the point a few float steps beyond
  * the other wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
-#define BEHIND_SURFACE -4e-6f
+#define BEHIND_SURFACE(radius) (-SEGMENT_MARGIN(radius))
 
 /* Whether nothing stands between the surface and the light; counts its ray. */
 static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* light, float step_delta, float* rays) {
   Ray ray;
   ray.origin = s->position;
   ray.direction = light->towards;
-  ray.t_min = BEHIND_SURFACE;
+  ray.t_min = BEHIND_SURFACE(s->radius);
   ray.t_max = light->distance;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
@@ -56,11 +50,15 @@ static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* li
   return !trace_any(POOL_ARGS, ray, ends);
 }
 
-/* The samplers below return false when the light does not reach the surface's front whatever stands between. */
-
 #ifdef HAS_DELTA_LIGHTS
-/* Irradiance of one point light, I cos / d^2, or directional light, E cos. Of more than ALL_DELTA_LIGHTS one is drawn,
- * else it is number i. */
+/* FOR_LIGHT_1(ID, name) is the code of a kind that is compiled in, FOR_LIGHT_0 that of one that is not. */
+#define FOR_LIGHT(with, ID, name) FOR_LIGHT_(with, ID, name)
+#define FOR_LIGHT_(with, ID, name) FOR_LIGHT_##with(ID, name)
+#define FOR_LIGHT_0(ID, name)
+#define SAMPLE_LIGHT(ID, name) FOR_LIGHT(WITH_LIGHT_##ID, ID, name)
+
+/* One [[light]]: number i, or where there are more than ALL_DELTA_LIGHTS one that is drawn. False where the light does not
+ * reach the surface's front whatever stands between. */
 static inline bool sample_delta_light(const Surface* s, Lights lights, float4 u, uint i, LightSample* sample) {
   const uint count = lights.params->delta_lights;
   float share = 1.0f;
@@ -69,79 +67,56 @@ static inline bool sample_delta_light(const Surface* s, Lights lights, float4 u,
     share = lights.delta[i].cumulative - (i > 0u ? lights.delta[i - 1u].cumulative : 0.0f);
   }
   const __global DeltaLight* light = lights.delta + i;
-  float3 towards = load3(light->vector);
-  float falloff = 1.0f;
+  const float2 place = count > ALL_DELTA_LIGHTS ? u.zw : u.xy; /* what has not chosen the light is stratified */
+  float falloff = 0.0f, pdf = 0.0f;
+  sample->towards = s->normal;
   sample->distance = INFINITY;
-  if (light->type == LIGHT_POINT) {
-    towards -= s->position;
-    /* A light on the surface itself: finite, and nobody can say which side it is on. */
-    const float d2 = fmax(dot3(towards, towards), 1e-12f);
-    sample->distance = sqrt(d2);
-    towards /= sample->distance;
-    falloff = 1.0f / d2;
-  }
-  const float cosine = dot3(s->normal, towards);
-  sample->towards = towards;
+#define FOR_LIGHT_1(ID, name)     \
+  if (light->type == LIGHT_##ID) \
+    falloff = name##_sample(light, s->position, place, &sample->towards, &sample->distance, &pdf);
+  LIGHT_KINDS(SAMPLE_LIGHT)
+#undef FOR_LIGHT_1
+  const float cosine = dot3(s->normal, sample->towards);
   sample->irradiance = load3(light->strength) * (cosine * falloff) / share;
   sample->normal = (float3)(0.0f);
   sample->radius = 0.0f;
+#ifdef HAS_LOBES
+  sample->pdf = share * pdf;
+#endif
   return cosine > 0.0f;
 }
-#endif
 
-#ifdef HAS_EMITTERS
-/* One emitting splat in proportion to its power, one point on the disc of its effective area: H = L A cos cos' / (d^2 p). */
-static inline bool sample_emitter(POOL_PARAMS, const Surface* s, Lights lights, float4 u, LightSample* sample) {
-  const uint i = pick(&lights.emitters->cumulative, sizeof(Emitter) / sizeof(float), lights.params->emitters, u.x);
-  const float share = lights.emitters[i].cumulative - (i > 0u ? lights.emitters[i - 1u].cumulative : 0.0f);
-  const uint point = lights.emitters[i].point;
-  const float4 centre = pool_point_texel(POINT_TEXELS * point);
-  const float4 normal = pool_point_texel(POINT_TEXELS * point + 1u);
-  const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
-  float3 a, b;
-  tangents(normal.xyz, &a, &b);
-  const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
-  float3 towards = centre.xyz + r * cos(phi) * a + r * sin(phi) * b - s->position;
-  /* Not nearer than a tenth of the disc: the estimate of a light that touches the surface stays finite. */
-  const float d2 = fmax(dot3(towards, towards), 0.01f * area);
-  sample->distance = sqrt(d2);
-  towards /= sample->distance;
-  const float cosine = dot3(s->normal, towards), cosine_at_light = -dot3(normal.xyz, towards);
-  sample->towards = towards;
-  sample->irradiance =
-      load3(lights.materials[(uint)normal.w].emission) * (area * cosine * cosine_at_light / (d2 * share));
-  sample->normal = normal.xyz;
-  sample->radius = centre.w;
-  return share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f;
-}
-#endif
-
-#ifdef HAS_ENVIRONMENT
-static inline bool sample_environment(const Surface* s, Lights lights, float4 u, LightSample* sample) {
-  sample->towards = cosine_direction(s->normal, u.x, u.y);
-  sample->distance = INFINITY;
-  sample->irradiance = load3_constant(lights.params->environment) * 3.14159265f; /* cos / (cos/pi) */
-  sample->normal = (float3)(0.0f);
-  sample->radius = 0.0f;
-  return true;
+/* Where a photon of the light sets out. */
+static inline PhotonOrigin emit_from_light(const __global DeltaLight* light, float2 u) {
+  PhotonOrigin origin = {(float3)(0.0f), true, (float3)(0.0f)};
+#define FOR_LIGHT_1(ID, name)     \
+  if (light->type == LIGHT_##ID) \
+    origin = name##_emit(light, u);
+  LIGHT_KINDS(SAMPLE_LIGHT)
+#undef FOR_LIGHT_1
+  return origin;
 }
 #endif
 
 /* Irradiance H [W/m2, scaled] of the surface from all lights, one estimate; the mean over samples converges to it.
  * Adds the number of shadow rays traced to *rays. One place traces them all: the walk stands once in the code, and
- * work-items that shade different lights walk together. Where there are Phong surfaces, s->highlight grows by what their
- * lobe makes of point and directional lights, which no ray that it sends out can meet. */
-static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, SampleId id, float* rays) {
+ * work-items that shade different lights walk together. Where the surface has a lobe, s->highlight becomes the radiance that
+ * the lobe makes of the lights; a light that rays of the lobe may meet themselves counts by its MIS weight (seen_light). */
+static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, SampleId id, Viewed viewed, float* rays) {
   float3 sum = (float3)(0.0f);
   uint delta_samples = 0u, emitter_samples = 0u, environment_samples = 0u;
+#ifdef HAS_LOBES
+  s->highlight = (float3)(0.0f);
+#endif
 #ifdef HAS_DELTA_LIGHTS
   delta_samples = lights.params->delta_lights <= ALL_DELTA_LIGHTS ? lights.params->delta_lights : 1u;
 #endif
 #ifdef HAS_EMITTERS
-  emitter_samples = 1u;
+  emitter_samples = lights.params->emitters > 0u ? 1u : 0u;
 #endif
 #ifdef HAS_ENVIRONMENT
-  environment_samples = 1u;
+  const float3 sky = load3_constant(lights.params->environment);
+  environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? 1u : 0u;
 #endif
   for (uint i = 0u; i < delta_samples + emitter_samples + environment_samples; ++i) {
     const float4 u = stratified4(id, i < delta_samples ? 1u : i < delta_samples + emitter_samples ? 2u : 3u);
@@ -152,18 +127,23 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
       faces = sample_delta_light(s, lights, u, i, &light);
 #endif
 #ifdef HAS_EMITTERS
-    if (i == delta_samples)
-      faces = sample_emitter(POOL_ARGS, s, lights, u, &light);
+    if (i >= delta_samples && i < delta_samples + emitter_samples)
+      faces = sample_emitter(POOL_ARGS, s, lights.materials, lights.emitters, lights.params->emitters, u, &light);
 #endif
 #ifdef HAS_ENVIRONMENT
     if (i == delta_samples + emitter_samples)
-      faces = sample_environment(s, lights, u, &light);
+      faces = sample_sky(s, lights.params, u, &light);
 #endif
     if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays)) {
       sum += light.irradiance;
-#ifdef HAS_PHONG
-      if (i < delta_samples)
-        s->highlight += light.irradiance * phong_lobe(dot3(light.towards, s->mirrored), s->exponent);
+#ifdef HAS_LOBES
+      const __global Material* material = lights.materials + s->material;
+      if (has_flag(material, MATERIAL_HAS_LOBE)) {
+        float pdf;
+        const float3 f = eval_lobe(s, material, viewed.direction, light.towards, &pdf);
+        pdf *= viewed.specular_probability;
+        s->highlight += light.irradiance * f * (light.pdf > 0.0f ? mis_weight(light.pdf, pdf) : 1.0f);
+      }
 #endif
     }
   }

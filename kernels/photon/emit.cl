@@ -36,17 +36,6 @@ static inline float2 stratified2(const __global PhotonAim* aim, uint number, Sam
   return (float2)(fmin(u, 0.99999994f), unit_float(reversed + turn));
 }
 
-/* A direction of a cone about `axis`, unit, of sine^2 s2 of its half angle, or any direction where s2 >= 1; density 1 over
- * *solid_angle. */
-static inline float3 cone_direction(float3 axis, float s2, float2 u, float* solid_angle) {
-  const float height = s2 >= 1.0f ? 2.0f : s2 / (1.0f + sqrt(1.0f - s2)); /* 1 - cosine of the half angle */
-  *solid_angle = 6.2831853f * height;
-  const float down = u.x * height, r = sqrt(fmax(0.0f, down * (2.0f - down))), phi = 6.2831853f * u.y;
-  float3 a, b;
-  tangents(axis, &a, &b);
-  return normalize3((1.0f - down) * axis + r * cos(phi) * a + r * sin(phi) * b);
-}
-
 /* A point of the disc about the origin across `axis`. */
 static inline float3 disc_point(float3 axis, float radius, float u, float v) {
   float3 a, b;
@@ -98,20 +87,21 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
 #endif
   const __global PhotonLeaf* leaf = from.leaves + aim->leaf;
   const float4 u = random4(id, DIMENSION_ORIGIN);
-  const bool is_delta = aim->source < AIM_ENVIRONMENT;
-  const __global DeltaLight* light = from.lights.delta + (is_delta ? aim->source : 0u);
   bool parallel = aim->source == AIM_ENVIRONMENT;
   float3 colour = (float3)(0.0f), origin = (float3)(0.0f), towards = (float3)(0.0f, 0.0f, 1.0f);
   float solid_angle = 1.0f;
-  if (is_delta) {
-    colour = load3(light->strength);
-    parallel = light->type == LIGHT_DIRECTIONAL;
-    origin = load3(light->vector);
+  if (aim->source < AIM_ENVIRONMENT) {
+#ifdef HAS_DELTA_LIGHTS
+    const PhotonOrigin of_light = emit_from_light(from.lights.delta + aim->source, u.xy);
+    colour = of_light.strength;
+    parallel = of_light.parallel;
+    origin = of_light.vector;
     towards = origin;
+#endif
   } else if (aim->source == AIM_EMITTERS) {
     origin = emitter_point(POOL_ARGS, from, u, &e);
     colour = e.power;
-    e.ray.t_min = BEHIND_SURFACE;
+    e.ray.t_min = BEHIND_SURFACE(e.ends.origin_radius);
   } else {
     colour = load3_constant(from.lights.params->environment);
     towards = cone_direction(towards, 1.0f, u.xy, &solid_angle);

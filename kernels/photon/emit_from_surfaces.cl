@@ -17,11 +17,11 @@ static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __gl
   const float4 centre = pool_point_texel(POINT_TEXELS * point), normal = pool_point_texel(POINT_TEXELS * point + 1u);
   const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
   const uint material = (uint)normal.w;
-  const bool two_sided = from.lights.materials[material].type == MATERIAL_GLASS, inside = two_sided && u.w < 0.5f;
+  const bool two_sided = has_flag(from.lights.materials + material, MATERIAL_TRANSMITS), inside = two_sided && u.w < 0.5f;
   Emission e;
   e.ray.origin = centre.xyz + disc_point(normal.xyz, sqrt(area * 0.31830989f), u.x, u.y);
   e.ray.direction = cosine_direction(inside ? -normal.xyz : normal.xyz, v.y, u.z);
-  e.ray.t_min = BEHIND_SURFACE;
+  e.ray.t_min = BEHIND_SURFACE(centre.w);
   e.ray.t_max = INFINITY;
 #ifdef STEP_ABSOLUTE
   e.ray.step_delta = from.lights.params->step_delta;

@@ -45,27 +45,20 @@ static inline void store3(float3 v, __global float* to) {
 
 static inline bool is_dark(float3 power) { return !(power.x > 0.0f || power.y > 0.0f || power.z > 0.0f); }
 
-/* How a photon goes on from a surface that it has met; PHOTON_ENDS where it does. A Phong surface takes it or mirrors it, at
- * random by its lobe's share in all that it reflects; one that comes straight from the light is mirrored, as its diffuse
+/* How a photon goes on from a surface that it has met; PHOTON_ENDS where it does. A surface that is both takes it or
+ * mirrors it at random; one that comes straight from the light is mirrored, as its diffuse
  * part is no caustic. */
 static inline uint meet_surface(const Surface* s, const __global Material* materials, float3 direction, SampleId id,
                                 uint bounces, Media* media, Scatter* scatter, float3* power) {
   const __global Material* material = materials + s->material;
-  float chance = material->type == MATERIAL_DIFFUSE ? 0.0f : 1.0f;
-#ifdef HAS_PHONG
-  if (material->type == MATERIAL_PHONG && bounces > 0u) {
-    const float3 lobe = load3(material->specular);
-    const float of_lobe = fmax(fmax(lobe.x, lobe.y), lobe.z);
-    chance = of_lobe / fmax(fmax(fmax(s->albedo.x, s->albedo.y), s->albedo.z) + of_lobe, 1e-30f);
-  }
-#endif
-  if (!(random4(id, DIMENSION_CHOICE).x < chance)) {
-    *power /= 1.0f - chance;
+  const float probability = bounces > 0u ? specular_probability(s, material) : has_flag(material, MATERIAL_SPECULAR) ? 1.0f : 0.0f;
+  if (!(random4(id, DIMENSION_CHOICE).x < probability)) {
+    *power /= 1.0f - probability;
     return s->front ? PHOTON_STORED : PHOTON_ABSORBED;
   }
   if (!scatter_ray(s, materials, direction, random4(id, DIMENSION_SCATTER).xy, media, scatter))
     return PHOTON_ABSORBED;
-  *power *= scatter->weight / chance;
+  *power *= scatter->weight / probability;
   return is_dark(*power) ? PHOTON_ABSORBED : PHOTON_ENDS;
 }
 
@@ -93,7 +86,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   Media media = in_air();
   uint end = PHOTON_ASIDE, bounces = FIRST_RAY, splat = NO_SPLAT;
   float rays = 0.0f;
-#ifdef HAS_GLASS
+#ifdef HAS_TRANSMISSION
   float set_out_in = 0.0f; /* index of what the photon set out in, when it has passed through glass: only then it is known */
 #endif
   for (; !is_dark(power); ++bounces) {
@@ -130,14 +123,14 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     position = s.position;
     inward = -s.normal;
     splat = s.splat;
-#ifdef HAS_GLASS
+#ifdef HAS_TRANSMISSION
     const float here = ior_of(media, materials);
 #endif
     end = meet_surface(&s, materials, ray.direction, id, bounces, &media, &scatter, &power);
     absorbed += before - power;
     if (end != PHOTON_ENDS)
       break;
-#ifdef HAS_GLASS
+#ifdef HAS_TRANSMISSION
     /* The power of point lights is that of the light, whatever stands about them; that of surfaces comes of a radiance. */
     if (scatter.through && set_out_in == 0.0f)
       set_out_in = aim->source < AIM_ENVIRONMENT ? 1.0f : here;
@@ -150,7 +143,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
     id.vertex += 1u;
   }
   float seen = 1.0f;
-#ifdef HAS_GLASS
+#ifdef HAS_TRANSMISSION
   if (set_out_in > 0.0f) {
     const float ratio = set_out_in / ior_of(media, materials);
     seen = ratio * ratio;

@@ -32,7 +32,7 @@ __kernel void direct_irradiance_of_points(POOL_PARAMS, __constant RenderParams* 
   for (uint k = 0u; k < samples; ++k) {
     /* A point takes the place of a pixel in the random numbers; 0x40000000 keeps it apart from the picture's. */
     const SampleId id = {(uint2)(point, 0x40000000u), k, params->seed};
-    sum += direct_irradiance(POOL_ARGS, &surface, lights, id, &rays);
+    sum += direct_irradiance(POOL_ARGS, &surface, lights, id, viewed_by(-surface.normal, 0.0f), &rays);
   }
 #endif
   irradiance[3u * point] = sum.x / (float)samples;

@@ -32,10 +32,13 @@ static inline void add_rays(__constant RenderParams* params, uint2 pixel, uint s
     u = convert_float16(a >> 8u) * 0x1p-24f;
     v = convert_float16(b >> 8u) * 0x1p-24f;
   }
-  const uint2 grid = grid_of(params->samples);
+  const SampleId first = {pixel, sample, params->seed};
+  const PixelPass pass = pixel_pass(first, params->samples, params->jitter != 0u);
   const uint16 i = id % GRID_RAYS;
-  const float16 at_x = (float)pixel.x + (convert_float16(i % grid.x) + u) / (float)grid.x;
-  const float16 at_y = (float)pixel.y + (convert_float16(i / grid.x) + v) / (float)grid.y;
+  uint16 column, row;
+  STRATA_OF_SAMPLE(pass, uint16, i, column, row);
+  const float16 at_x = (float)pixel.x + (convert_float16(column) + u) / (float)pass.strata.x;
+  const float16 at_y = (float)pixel.y + (convert_float16(row) + v) / (float)pass.strata.y;
   const float16 x = camera->corner[0] + at_x * camera->step_x[0] + at_y * camera->step_y[0];
   const float16 y = camera->corner[1] + at_x * camera->step_x[1] + at_y * camera->step_y[1];
   const float16 z = camera->corner[2] + at_x * camera->step_x[2] + at_y * camera->step_y[2];

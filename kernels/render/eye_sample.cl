@@ -50,23 +50,67 @@ static inline void add_diffuse(float3 radiance, float* sums) {
   sums[FILM_DIFFUSE + 2] += radiance.z;
 }
 
+/* How the ray was chosen that now meets something: densities per solid angle. */
+typedef struct RayChoice {
+#ifdef HAS_LOBES
+  float lobe_pdf; /* of the lobe that has sent the ray out; 0: no sampled light could have found what it meets */
+  float sky_pdf;  /* with which the lights of the surface there were sampled in its direction */
+#endif
+  float unused;
+} RayChoice;
+
+static inline RayChoice only_choice(void) {
+  RayChoice choice;
+#ifdef HAS_LOBES
+  choice.lobe_pdf = choice.sky_pdf = 0.0f;
+#endif
+  choice.unused = 0.0f;
+  return choice;
+}
+
+/* Share of the light that the ray meets which counts, as sampled lights count the rest. `light_pdf`: with which they are. */
+static inline float share_of_ray(RayChoice choice, float light_pdf) {
+#if defined(HAS_LOBES) && defined(HAS_LIGHT)
+  if (choice.lobe_pdf > 0.0f)
+    return mis_weight(choice.lobe_pdf, light_pdf);
+#endif
+  return 1.0f;
+}
+
 /* What the ray finds that meets nothing, or a surface that shines itself. */
-static inline float3 seen_light(Lights lights, bool met, const Surface* s) {
-  if (!met)
-    return load3_constant(lights.params->environment);
+static inline float3 seen_light(Lights lights, bool met, const Surface* s, float3 direction, RayChoice choice) {
+  if (!met) {
+#ifdef HAS_LOBES
+    return sky_radiance(lights.params, direction) * share_of_ray(choice, choice.sky_pdf);
+#else
+    return sky_radiance(lights.params, direction);
+#endif
+  }
 #ifdef HAS_EMITTERS
   if (s->front)
-    return load3(lights.materials[s->material].emission);
+    return load3(lights.materials[s->material].emission) *
+           share_of_ray(choice, emitter_pdf(s, lights.materials, direction));
 #endif
   return (float3)(0.0f);
 }
 
+/* Russian roulette: probability with which a ray goes on after `bounces` bounces, `factor`, what the surface leaves of its
+ * light, in its strongest colour, `longest` at most; 1 while bounces are sure; 0 where chance ends the ray. */
+static inline float russian_roulette(SampleId id, uint bounces, float longest, float3 factor) {
+  if (bounces <= SURE_BOUNCES)
+    return 1.0f;
+  const float survival = fmin(fmax(fmax(factor.x, factor.y), factor.z), longest);
+  return random4(id, DIMENSION_ROULETTE).x < survival ? survival : 0.0f;
+}
+
+static inline bool is_bright(float3 v) { return v.x > 0.0f || v.y > 0.0f || v.z > 0.0f; }
+
 /* Always inline: as a function of its own, a long path is given the sums, and the ends of rays, in memory. Compilers that are
  * told not to optimise leave marks of forced inlining that simulators do not know. */
 #ifdef __OPTIMIZE__
-#define IN_ITS_PLACE __attribute__((always_inline))
+#define ALWAYS_INLINE __attribute__((always_inline))
 #else
-#define IN_ITS_PLACE
+#define ALWAYS_INLINE
 #endif
 
 #ifndef HAS_SPECULAR /* else kernels/render/specular_sample.cl */
@@ -85,7 +129,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     add_surface(lights.params, ray, t_start, &s, sums);
     if (s.front) {
 #ifdef HAS_LIGHT
-      radiance = s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
+      radiance = s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, viewed_by(ray.direction, 0.0f), &sums[FILM_RAYS]);
 #endif
 #ifdef HAS_EMITTERS
       radiance += load3(lights.materials[s.material].emission);
@@ -95,7 +139,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #endif
     }
   } else {
-    radiance = load3_constant(lights.params->environment);
+    radiance = sky_radiance(lights.params, ray.direction);
   }
   add_direct(radiance, sums);
 #ifdef HAS_RADIOSITY

@@ -1,36 +1,8 @@
-/* The picture by path tracing (kernels/render/path_sample.cl) from the hits of its eye rays; arguments, NDRange and film
- * are those of kernels/render/shade.cl, and with the paths LE and LDE alone the picture is the same to the bit. A
- * work-item follows its path to the end: paths of a group end at different bounces, which CPU devices do not mind. */
+/* The picture by path tracing (kernels/render/path_sample.cl); with the paths LE and LDE alone the picture is bit-identical to
+ * shade_pixels'. A work-item follows its path to the end: paths of a group end at different bounces, which CPU devices do
+ * not mind. */
 #include "render/path_sample.cl"
 #include "render/specular_path_sample.cl"
-#include "render/film.cl"
-#include "render/group.cl"
-
-__kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
-void path_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
-                  const __global DeltaLight* delta_lights, const __global Emitter* emitters,
-                  const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint columns, uint rows,
-                  uint first_sample) {
-  __local PixelSamples samples_of[GROUP_PIXELS];
-  const GroupItem item = group_item();
-  const bool in_tile = item.column < columns && item.row < rows;
-  const size_t at = item.row * (size_t)columns + item.column;
-  const Lights lights = {params, materials, delta_lights, emitters};
-  const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + item.lane, params->seed};
-  float sums[SAMPLE_SUMS];
-  for (int c = 0; c < SAMPLE_SUMS; ++c)
-    sums[c] = 0.0f;
-  uint point = FILM_NO_POINT;
-  if (in_tile && id.sample < params->samples) {
-    Ray ray;
-    float t_start;
-    sample_ray(params, id, &ray, &t_start);
-    const Hit hit = {hits[at].t[item.lane], hits[at].splat[item.lane]};
-    point = add_path(POOL_ARGS, lights, id, ray, t_start, hit, sums);
-  }
-  keep_sample(sums, point, item.lane, samples_of + item.pixel);
-  barrier(CLK_LOCAL_MEM_FENCE);
-  if (in_tile)
-    add_to_film(samples_of + item.pixel, item.lane, first_sample, min(params->samples - first_sample, (uint)GRID_RAYS),
-                film + FILM_STRIDE * at);
-}
+#define PIXEL_KERNEL path_pixels
+#define ADD_SAMPLE add_path
+#include "render/pixels.cl"

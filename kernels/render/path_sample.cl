@@ -36,7 +36,7 @@ static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
   Ray ray;
   ray.origin = s->position;
   ray.direction = cosine_direction(s->normal, u.x, u.y);
-  ray.t_min = BEHIND_SURFACE;
+  ray.t_min = BEHIND_SURFACE(s->radius);
   ray.t_max = INFINITY;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
@@ -44,16 +44,13 @@ static inline Ray bounced_ray(const Surface* s, SampleId id, float step_delta) {
   return ray;
 }
 
-/* Reflects the path's weight off the surface that is its `surfaces`-th; false where the path ends. */
-static inline bool survives(const Surface* s, SampleId id, uint surfaces, float3* weight) {
-  *weight *= s->albedo;
-  if (surfaces > SURE_BOUNCES) {
-    const float survival = min(max(max(s->albedo.x, s->albedo.y), s->albedo.z), LONGEST_SURVIVAL);
-    if (!(random4(id, DIMENSION_ROULETTE).x < survival))
-      return false;
-    *weight /= survival;
-  }
-  return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
+/* Reflects the path's throughput off the surface that is its `surfaces`-th; false where the path ends. */
+static inline bool reflect_path(const Surface* s, SampleId id, uint surfaces, float3* throughput) {
+  const float survival = russian_roulette(id, surfaces, LONGEST_SURVIVAL, s->albedo);
+  if (survival == 0.0f)
+    return false;
+  *throughput = *throughput * s->albedo / survival;
+  return is_bright(*throughput);
 }
 
 /* Without a branch, as an address that is chosen would put the sums into memory. */
@@ -65,10 +62,10 @@ static inline void add_radiance(float3 radiance, bool direct, float* sums) {
 
 #ifndef HAS_SPECULAR /* else kernels/render/specular_path_sample.cl */
 /* As add_sample, with all light that the eye ray finds. */
-IN_ITS_PLACE
+ALWAYS_INLINE
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
-  float3 weight = (float3)(1.0f);
+  float3 throughput = (float3)(1.0f);
   ShadowEnds ends = free_ends();
   uint state = 0u; /* of the automaton of path classes, after the surfaces so far */
   for (uint surfaces = 1u;; ++surfaces) {
@@ -82,16 +79,17 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
         add_surface(lights.params, ray, t_start, &s, sums);
       }
       if (path_counts(lights.params, state))
-        radiance = seen_light(lights, met, &s);
+        radiance = seen_light(lights, met, &s, ray.direction, only_choice());
     }
     state = path_after(lights.params, state, false);
     const bool shines = met && s.front && surfaces <= lights.params->most_bounces;
 #ifdef HAS_LIGHT
     if (shines && path_counts(lights.params, state))
-      radiance += weight * (s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]));
+      radiance += throughput * (s.albedo * INVERSE_PI *
+                               direct_irradiance(POOL_ARGS, &s, lights, id, viewed_by(ray.direction, 0.0f), &sums[FILM_RAYS]));
 #endif
     add_radiance(radiance, surfaces == 1u, sums);
-    if (!shines || surfaces == lights.params->most_bounces || !survives(&s, id, surfaces, &weight))
+    if (!shines || surfaces == lights.params->most_bounces || !reflect_path(&s, id, surfaces, &throughput))
       break;
     ray = bounced_ray(&s, id, lights.params->step_delta);
     ends.origin_normal = s.normal;

@@ -1,40 +1,6 @@
-/* The picture from the hits of its eye rays (kernels/render/eye_rays.cl): a pixel's 32 rays are one work-group or half of
- * one, shaded together (method.md section 6).
- * NDRange: (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows), local (GROUP_X, GROUP_Y); pixel (i, j) of the tile,
- * the image's (first_x + i, first_y + j), is shaded from hits[j * columns + i] into film[(j * columns + i) *
- * FILM_STRIDE ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel has, and adds to the film
- * unless first_sample is 0; of fewer the rest of the group rests. Results do not depend on how an image is cut into
- * launches. */
+/* The picture: light by shadow rays, radiosity and photons (kernels/render/eye_sample.cl, kernels/render/specular_sample.cl). */
 #include "render/eye_sample.cl"
 #include "render/specular_sample.cl"
-#include "render/film.cl"
-#include "render/group.cl"
-
-__kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
-void shade_pixels(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
-                  const __global DeltaLight* delta_lights, const __global Emitter* emitters,
-                  const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint columns, uint rows,
-                  uint first_sample) {
-  __local PixelSamples samples_of[GROUP_PIXELS];
-  const GroupItem item = group_item();
-  const bool in_tile = item.column < columns && item.row < rows;
-  const size_t at = item.row * (size_t)columns + item.column;
-  const Lights lights = {params, materials, delta_lights, emitters};
-  const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + item.lane, params->seed};
-  float sums[SAMPLE_SUMS];
-  for (int c = 0; c < SAMPLE_SUMS; ++c)
-    sums[c] = 0.0f;
-  uint point = FILM_NO_POINT;
-  if (in_tile && id.sample < params->samples) {
-    Ray ray;
-    float t_start;
-    sample_ray(params, id, &ray, &t_start);
-    const Hit hit = {hits[at].t[item.lane], hits[at].splat[item.lane]};
-    point = add_sample(POOL_ARGS, lights, id, ray, t_start, hit, sums);
-  }
-  keep_sample(sums, point, item.lane, samples_of + item.pixel);
-  barrier(CLK_LOCAL_MEM_FENCE);
-  if (in_tile)
-    add_to_film(samples_of + item.pixel, item.lane, first_sample, min(params->samples - first_sample, (uint)GRID_RAYS),
-                film + FILM_STRIDE * at);
-}
+#define PIXEL_KERNEL shade_pixels
+#define ADD_SAMPLE add_sample
+#include "render/pixels.cl"

@@ -13,38 +13,33 @@ typedef struct Bounce {
   bool specular;
 } Bounce;
 
-/* Chooses, on a Phong surface at random between its diffuse part and its lobe; false where the path ends. */
-static inline bool choose_bounce(const Surface* s, Lights lights, SampleId id, float3 direction, Media* media,
-                                 Bounce* bounce) {
-  const __global Material* material = lights.materials + s->material;
-  const float3 lobe = load3(material->specular);
-  const float of_lobe = fmax(fmax(lobe.x, lobe.y), lobe.z);
-  const float of_both = fmax(fmax(s->albedo.x, s->albedo.y), s->albedo.z) + of_lobe;
-  float chance = material->type == MATERIAL_DIFFUSE ? 0.0f : 1.0f;
-  if (material->type == MATERIAL_PHONG)
-    chance = of_both > 0.0f ? of_lobe / of_both : 0.0f;
-  bounce->specular = random4(id, DIMENSION_ROULETTE).y < chance;
+/* Chooses at random between a surface's diffuse and specular parts, the latter with `probability`; false where the path ends. */
+static inline bool choose_bounce(const Surface* s, Lights lights, SampleId id, float3 direction, float probability,
+                                 Media* media, Bounce* bounce) {
+  bounce->specular = random4(id, DIMENSION_ROULETTE).y < probability;
   if (bounce->specular) {
     const float2 u = stratified4(id, DIMENSION_SCATTER).xy;
     const bool goes_on = scatter_ray(s, lights.materials, direction, u, media, &bounce->scatter);
-    bounce->scatter.weight /= chance;
+    bounce->scatter.weight /= probability;
     return goes_on;
   }
   bounce->scatter.direction = bounced_ray(s, id, 0.0f).direction;
-  bounce->scatter.weight = s->albedo / (1.0f - chance);
+  bounce->scatter.weight = s->albedo / (1.0f - probability);
+  bounce->scatter.pdf = 0.0f;
   bounce->scatter.back = bounce->scatter.through = false;
   return s->front;
 }
 
 /* As add_sample, with all light that the eye ray finds. */
-IN_ITS_PLACE
+ALWAYS_INLINE
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
-  float3 weight = (float3)(1.0f);
+  float3 throughput = (float3)(1.0f);
   ShadowEnds ends = free_ends();
   Media media = in_air();
   uint state = 0u;                      /* of the automaton of path classes, after the surfaces so far */
-  bool by_chance = true, mirrored = false; /* no shadow ray has looked for what the ray meets; the first surface is specular */
+  bool by_chance = true, mirrored = false; /* no sampled light stands for all that the ray meets; the first surface is specular */
+  RayChoice choice = only_choice();
   for (uint surfaces = 1u;; ++surfaces) {
     Surface s;
     float3 found = (float3)(0.0f), highlight = (float3)(0.0f);
@@ -53,23 +48,24 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
     const bool within = surfaces <= lights.params->most_bounces;
     if (met) {
       media = media_before(media, &s, lights.materials);
-      weight *= beer_of(media, lights.materials, s.t);
+      throughput *= beer_of(media, lights.materials, s.t);
       if (surfaces == 1u) {
         point = s.splat;
         add_first_surface(lights, ray, t_start, &s, sums);
       }
     }
     if (by_chance && path_counts(lights.params, state))
-      found = seen_light(lights, met, &s);
+      found = seen_light(lights, met, &s, ray.direction, choice);
+    const __global Material* material = lights.materials + (met ? s.material : 0u);
+    const float probability = met ? specular_probability(&s, material) : 0.0f;
 #ifdef HAS_LIGHT
-    const __global Material* material = lights.materials + s.material;
-    if (met && within && s.front && is_diffuse(material)) {
+    if (met && within && s.front && is_lit(material)) {
       const bool as_diffuse = path_counts(lights.params, path_after(lights.params, state, false));
       const bool as_specular =
-          material->type == MATERIAL_PHONG && path_counts(lights.params, path_after(lights.params, state, true));
+          has_flag(material, MATERIAL_HAS_LOBE) && path_counts(lights.params, path_after(lights.params, state, true));
       if (as_diffuse || as_specular) {
-        prepare_highlight(&s, material, ray.direction);
-        const float3 direct = s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
+        const float3 direct = s.albedo * INVERSE_PI *
+                              direct_irradiance(POOL_ARGS, &s, lights, id, viewed_by(ray.direction, probability), &sums[FILM_RAYS]);
         found += as_diffuse ? direct : (float3)(0.0f);
         highlight = as_specular ? highlight_of(&s, material) : (float3)(0.0f);
       }
@@ -77,19 +73,20 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
 #endif
     const bool first = surfaces == 1u;
     const float3 none = (float3)(0.0f), both = found + highlight;
-    add_seen(weight * (first ? found : none), weight * (first || mirrored ? none : both),
-             weight * (first ? highlight : mirrored ? both : none), none, true, sums);
+    add_seen(throughput * (first ? found : none), throughput * (first || mirrored ? none : both),
+             throughput * (first ? highlight : mirrored ? both : none), none, true, sums);
     /* Behind the last surface that counts shadow rays have looked, where it is diffuse; where not, the next ray does. */
     Bounce bounce;
-    if (!met || !within || !choose_bounce(&s, lights, id, ray.direction, &media, &bounce) ||
+    if (!met || !within || !choose_bounce(&s, lights, id, ray.direction, probability, &media, &bounce) ||
         (!bounce.specular && surfaces >= lights.params->most_bounces))
       break;
     state = path_after(lights.params, state, bounce.specular);
     if (!path_goes_on(lights.params, state) && !(bounce.specular && path_counts(lights.params, state)))
       break;
-    if (!plays_on(id, surfaces, LONGEST_SURVIVAL, bounce.scatter.weight, &weight))
+    if (!throughput_after(id, surfaces, LONGEST_SURVIVAL, bounce.scatter.weight, &throughput))
       break;
     by_chance = bounce.specular;
+    choice = choice_of(&s, &bounce.scatter, probability);
     mirrored = first ? bounce.specular : mirrored;
     ray = scattered_ray(&s, &bounce.scatter, lights.params->step_delta);
     ends = scattered_ends(&s, &bounce.scatter, media);

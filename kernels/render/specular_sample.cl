@@ -27,56 +27,57 @@ static inline void add_seen(float3 direct, float3 diffuse, float3 specular, floa
   sums[SUM_SPECULAR + 2] += behind.z;
 }
 
-/* What direct_irradiance asks of a Phong surface. */
-static inline void prepare_highlight(Surface* s, const __global Material* material, float3 direction) {
-#ifdef HAS_PHONG
-  s->mirrored = reflect3(direction, facing_normal(s, direction));
-  s->exponent = material->exponent;
-  s->highlight = (float3)(0.0f);
-#endif
-}
-
+/* What the lobe of a surface, on which direct_irradiance was called, makes of the lights. */
 static inline float3 highlight_of(const Surface* s, const __global Material* material) {
-#ifdef HAS_PHONG
-  if (material->type == MATERIAL_PHONG)
-    return load3(material->specular) * s->highlight;
+#ifdef HAS_LOBES
+  if (has_flag(material, MATERIAL_HAS_LOBE))
+    return s->highlight;
 #endif
   return (float3)(0.0f);
 }
 
-/* What surfaces say of diffuse light. */
-static inline bool is_diffuse(const __global Material* material) {
-  return material->type == MATERIAL_DIFFUSE || material->type == MATERIAL_PHONG;
+/* Whether sampled lights reach the viewer by way of the surface. */
+static inline bool is_lit(const __global Material* material) {
+  return has_flag(material, MATERIAL_REFLECTS_DIFFUSELY | MATERIAL_HAS_LOBE);
 }
 
-/* Roulette: a ray survives a bounce with the probability `factor`, what the surface leaves of its light, in its strongest
- * colour, `longest` at most; its weight grows by what others lose. False where it ends. */
-static inline bool plays_on(SampleId id, uint bounces, float longest, float3 factor, float3* weight) {
-  if (bounces > SURE_BOUNCES) {
-    const float survival = fmin(fmax(fmax(factor.x, factor.y), factor.z), longest);
-    if (!(random4(id, DIMENSION_ROULETTE).x < survival))
-      return false;
-    *weight /= survival;
-  }
-  *weight *= factor;
-  return weight->x > 0.0f || weight->y > 0.0f || weight->z > 0.0f;
+/* Takes what a bounce leaves of the light; false where the ray ends. */
+static inline bool throughput_after(SampleId id, uint bounces, float longest, float3 factor, float3* throughput) {
+  const float survival = russian_roulette(id, bounces, longest, factor);
+  if (survival == 0.0f)
+    return false;
+  *throughput = *throughput / survival * factor;
+  return is_bright(*throughput);
 }
 
-/* As add_surface; the back of glass is no black one. */
+/* How the ray was chosen that goes on from s, the specular part having been taken with `probability`. */
+static inline RayChoice choice_of(const Surface* s, const Scatter* scatter, float probability) {
+  RayChoice choice = only_choice();
+#ifdef HAS_LOBES
+  choice.lobe_pdf = probability * scatter->pdf;
+#ifdef HAS_ENVIRONMENT
+  choice.sky_pdf = sky_pdf(s->normal, scatter->direction);
+#endif
+#endif
+  return choice;
+}
+
+/* As add_surface; the back of what transmits is not black. */
 static inline void add_first_surface(Lights lights, Ray ray, float t_start, const Surface* s, float* sums) {
   add_surface(lights.params, ray, t_start, s, sums);
-  if (!s->front && lights.materials[s->material].type == MATERIAL_GLASS)
+  if (!s->front && has_flag(lights.materials + s->material, MATERIAL_TRANSMITS))
     sums[FILM_BACK_FACE] -= 1.0f;
 }
 
 /* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
-IN_ITS_PLACE
+ALWAYS_INLINE
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
-  float3 weight = (float3)(1.0f);
+  float3 throughput = (float3)(1.0f);
   ShadowEnds ends = free_ends();
   Media media = in_air();
+  RayChoice choice = only_choice();
   const uint most = min(lights.params->most_bounces, MOST_EYE_BOUNCES);
   for (uint bounces = 0u;; ++bounces) {
     Surface s;
@@ -88,32 +89,35 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     if (met) {
       const __global Material* material = lights.materials + s.material;
       media = media_before(media, &s, lights.materials);
-      weight *= beer_of(media, lights.materials, s.t);
+      throughput *= beer_of(media, lights.materials, s.t);
       if (bounces == 0u) {
         point = s.splat;
         add_first_surface(lights, ray, t_start, &s, sums);
       }
-      if (s.front && is_diffuse(material) && (bounces == 0u || bounces < most)) {
+      if (s.front && is_lit(material) && (bounces == 0u || bounces < most)) {
 #ifdef HAS_LIGHT
-        prepare_highlight(&s, material, ray.direction);
-        direct = s.albedo * INVERSE_PI * direct_irradiance(POOL_ARGS, &s, lights, id, &sums[FILM_RAYS]);
+        direct = s.albedo * INVERSE_PI *
+                 direct_irradiance(POOL_ARGS, &s, lights, id, viewed_by(ray.direction, 1.0f), &sums[FILM_RAYS]);
         specular = highlight_of(&s, material);
 #endif
+        if (has_flag(material, MATERIAL_REFLECTS_DIFFUSELY)) {
 #ifdef HAS_RADIOSITY
-        diffuse = s.albedo * INVERSE_PI * s.irradiance;
+          diffuse = s.albedo * INVERSE_PI * s.irradiance;
 #endif
-        caustic = s.albedo * INVERSE_PI * caustic_irradiance_of(POOL_ARGS, &s);
+          caustic = s.albedo * INVERSE_PI * caustic_irradiance_of(POOL_ARGS, &s);
+        }
       }
     }
-    direct += seen_light(lights, met, &s);
-    add_seen(weight * direct, weight * diffuse, weight * specular, weight * caustic, bounces == 0u, sums);
+    direct += seen_light(lights, met, &s, ray.direction, choice);
+    add_seen(throughput * direct, throughput * diffuse, throughput * specular, throughput * caustic, bounces == 0u, sums);
     if (met && bounces < most)
       goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);
     /* No longest survival: what loses nothing goes on for MOST_EYE_BOUNCES. */
-    if (!goes_on || !plays_on(id, bounces, 1.0f, scatter.weight, &weight))
+    if (!goes_on || !throughput_after(id, bounces, 1.0f, scatter.weight, &throughput))
       break;
     ray = scattered_ray(&s, &scatter, lights.params->step_delta);
     ends = scattered_ends(&s, &scatter, media);
+    choice = choice_of(&s, &scatter, 1.0f);
     hit = trace_closest_from(POOL_ARGS, ray, ends);
     id.vertex += 1u;
   }

@@ -11,6 +11,10 @@
 /* Nodes of a grid and points of a leaf go in blocks of this many; grids are padded to it. */
 #define FMM_LANES 8
 
+/* Where a plane begins among planes of `stride` numbers each: nine planes of a large scene's nodes, or seven of its
+ * points, are more than 32 bits count. */
+#define FMM_PLANE(number, stride) ((pg_ulong)(number) * (stride))
+
 /* A source nearer than sqrt(FMM_CLOSE x its area), about four spacings, is taken as four quarters of its disc; farther
  * off it is a point. No r^2 of a lattice of spacing 1, nor between walls that meet at an edge, is near 16.3, so host
  * and device agree on which is which. */

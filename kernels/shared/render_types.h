@@ -1,5 +1,7 @@
 #ifndef POINTGI_SHARED_RENDER_TYPES_H
 #define POINTGI_SHARED_RENDER_TYPES_H
+#include "shared/light_kinds.h"
+#include "shared/material_kinds.h"
 #include "shared/scalar.h"
 /* What the host tells the render kernels of a scene. Lengths are in root cube units; radiometric quantities are divided
  * by one power of two of the host's choosing (RadianceScale), so that lights of 1e-20 or 1e20 W stay inside float. */
@@ -53,15 +55,15 @@ typedef struct EyeHits {
   pg_uint splat[GRID_RAYS]; /* bytes 128-255: index into the point pool, or NO_SPLAT */
 } EyeHits;
 
-#define LIGHT_POINT 0u
-#define LIGHT_DIRECTIONAL 1u
-
+/* One [[light]]. */
 typedef struct DeltaLight {
-  float vector[3];   /* bytes 0-11: point: position, root cube; directional: unit vector towards the light */
-  pg_uint type;      /* bytes 12-15 */
-  float strength[3]; /* bytes 16-27: point: intensity [W/sr] over the cube's side squared; directional: irradiance
-                        [W/m2]; scaled */
+  float vector[3];   /* bytes 0-11: point: position, root cube; others: unit vector towards the light */
+  pg_uint type;      /* bytes 12-15: LIGHT_<ID> of shared/light_kinds.h */
+  float strength[3]; /* bytes 16-27: point: intensity [W/sr] over the cube's side squared; others: irradiance [W/m2] of
+                        a surface that faces the light; scaled */
   float cumulative;  /* bytes 28-31: share of this and all earlier lights in the total, (0,1]; the last is 1 */
+  float sine2;       /* bytes 32-35: sine squared of half the angle under which a far light is seen; 0: one direction */
+  float pad[3];
 } DeltaLight;
 
 typedef struct Emitter {
@@ -69,18 +71,20 @@ typedef struct Emitter {
   float cumulative; /* bytes 4-7: share of this and all earlier emitters in the emitted power; the last is 1 */
 } Emitter;
 
-#define MATERIAL_DIFFUSE 0u
-#define MATERIAL_MIRROR 1u /* its front reflects */
-#define MATERIAL_GLASS 2u  /* the normals point out of it */
-#define MATERIAL_PHONG 3u  /* diffuse, and a specular lobe */
-
 typedef struct Material {
   float emission[3];   /* bytes 0-11: radiance of the front side, scaled */
-  pg_uint type;        /* bytes 12-15: MATERIAL_... */
-  float specular[3];   /* bytes 16-27: mirror: reflectance; phong: what the lobe reflects at most */
+  pg_uint type;        /* bytes 12-15: MATERIAL_<ID> of shared/material_kinds.h */
+  float specular[3];   /* bytes 16-27: reflectance of the specular part: of a lobe at most, of a complex index of
+                          refraction at normal incidence */
   float exponent;      /* bytes 28-31: phong: of the lobe */
   float absorption[3]; /* bytes 32-43: glass: share of light lost, per root cube side (Beer) */
   float ior;           /* bytes 44-47: glass: index of refraction */
+  float eta[3];        /* bytes 48-59: conductor: real part of the index of refraction; 0: `specular` at every angle */
+  float alpha;         /* bytes 60-63: conductor: width of the GGX distribution of normals; 0: smooth */
+  float extinction[3]; /* bytes 64-75: conductor: imaginary part of the index of refraction */
+  pg_uint flags;       /* bytes 76-79: MATERIAL_... of shared/material_kinds.h */
+  float emitter_density; /* bytes 80-83: of light sampling on its splats, per root cube side squared; 0: not sampled */
+  float pad[3];
 } Material;
 
 /* One pixel of the film, FILM_CHANNELS scalars. Radiances are scaled means over the pixel's samples; Z, N, P and albedo

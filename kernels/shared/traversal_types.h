@@ -46,12 +46,23 @@ typedef struct RayPacketAnswer {
 #define SELF_HIT_REACH 1.5f
 #define SELF_HIT_HEIGHT 0.75f
 #define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
-/* A sheet stored as two coincident sides: the other side is the surface itself as long as it lies within rounding. */
-#define COINCIDENT 1e-5f
+/* Lengths that stand for rounding are a hundredth of the radii at hand, so that a small object in a large cube is
+ * closed as it would be alone; never less than what coordinates near 1 and hits are rounded by, some 2^-21, and never
+ * more than `most`. */
+#define ROUNDING_OF_HITS 5e-7f
+#define ROUNDING_MARGIN(radii, most)                                                                                   \
+  ((radii)*0.01f < ROUNDING_OF_HITS ? ROUNDING_OF_HITS : (radii)*0.01f > (most) ? (most) : (radii)*0.01f)
+
+/* A sheet stored as two coincident sides: the other side is the surface itself as long as it lies within rounding.
+ * radii: those of the two discs together. */
+#define MOST_COINCIDENT 1e-5f
+#define COINCIDENT(radii) ROUNDING_MARGIN(radii, MOST_COINCIDENT)
 
 /* A segment between two points is traced from a little before its start to a little behind its end: where two walls
- * meet, rounding may put a point a few float steps beyond the other wall, and light would leak along the edge. */
-#define SEGMENT_MARGIN 4e-6f
+ * meet, rounding may put a point a few float steps beyond the other wall, and light would leak along the edge. A ray
+ * off a surface starts as far behind it. radii: those of the discs at its ends. */
+#define MOST_SEGMENT_MARGIN 4e-6f
+#define SEGMENT_MARGIN(radii) ROUNDING_MARGIN(radii, MOST_SEGMENT_MARGIN)
 
 /* A question of the V-map: does anything stand between two points? */
 typedef struct SegmentQuery {

@@ -1,5 +1,7 @@
 /* Overlapping discs near the first hit become one smooth surface: colour, normal and depth are means with a weight that
- * falls to zero at a disc's rim, or seams would show (method.md section 6). */
+ * falls to zero at a disc's rim, or seams would show (method.md section 6). Colour and the light that is stored with the
+ * points are means over the discs of the first one's material alone: those of a mirror or a lamp are black, and would
+ * darken what is beside it. */
 #include "lib/pools.cl"
 #include "lib/ray.cl"
 #include "surface/disc.cl"
@@ -24,23 +26,22 @@ typedef struct Surface {
   uint splat;    /* the disc hit first */
   uint material; /* its material */
   bool front;    /* the ray met the front side */
-#ifdef HAS_PHONG
-  float3 mirrored;  /* where the ray would go on, were the surface a mirror */
-  float exponent;   /* of the lobe about that */
+#ifdef HAS_LOBES
   float3 highlight; /* see direct_irradiance */
 #endif
 } Surface;
 
 typedef struct Blend {
   float3 normal_of_first;
-  float3 normal, albedo; /* weighted sums, as are irradiance, weight and t */
+  float3 normal, albedo; /* weighted sums, as are irradiance, caustic and t */
 #ifdef HAS_RADIOSITY
   float3 irradiance;
 #endif
 #ifdef HAS_CAUSTICS
   float4 caustic;
 #endif
-  float weight, t;
+  float t, weight;          /* `weight`: of normal and t */
+  float weight_of_material; /* of albedo, irradiance and caustic */
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
   float radius;
   uint splat, material;
@@ -58,24 +59,27 @@ static inline float3 field_normal(POOL_PARAMS, Ray ray, uint splat, float t, flo
 }
 #endif
 
-static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t, float q, float3 normal, float3 albedo) {
+/* `texel`: the disc's normal and material. */
+static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t, float q, float4 texel, float3 albedo) {
+  float3 normal = texel.xyz;
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
   /* A tiny floor keeps a lone disc visible out to its very rim. */
   const float rim = fmax(1.0f - q, 1e-3f);
   const float depth = 1.0f - (t - b->t_first) / (b->t_end - b->t_first);
-  const float w = rim * rim * depth;
+  const float w = rim * rim * depth, of_material = (uint)texel.w == b->material ? w : 0.0f;
   b->weight += w;
+  b->weight_of_material += of_material;
 #ifdef HAS_SPECULAR
   normal = field_normal(POOL_ARGS, ray, splat, t, normal);
 #endif
   b->normal += w * normal;
-  b->albedo += w * albedo;
+  b->albedo += of_material * albedo;
 #ifdef HAS_RADIOSITY
-  b->irradiance += w * irradiance_pool[splat].xyz;
+  b->irradiance += of_material * irradiance_pool[splat].xyz;
 #endif
 #ifdef HAS_CAUSTICS
-  b->caustic += w * caustic_pool[splat];
+  b->caustic += of_material * caustic_pool[splat];
 #endif
   b->t += w * t;
 }
@@ -95,27 +99,27 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float
 #ifdef HAS_CAUSTICS
   b->caustic = (float4)(0.0f);
 #endif
-  b->weight = b->t = 0.0f;
+  b->weight = b->weight_of_material = b->t = 0.0f;
   b->t_first = t;
   /* At least a few float steps, so that the window is never empty. */
   b->t_end = t + fmax(BLEND_DEPTH * centre.w, 1e-6f * t);
   b->radius = centre.w;
   b->splat = splat;
   b->material = (uint)normal.w;
-  blend_add(POOL_ARGS, b, ray, splat, t, q, normal.xyz, albedo);
+  blend_add(POOL_ARGS, b, ray, splat, t, q, normal, albedo);
 }
 
 static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
-  const float scale = 1.0f / b->weight;
+  const float scale = 1.0f / b->weight, scale_of_material = 1.0f / b->weight_of_material;
   s->t = b->t * scale;
   s->position = fma((float3)(s->t), ray.direction, ray.origin);
   s->normal = normalize3(b->normal);
-  s->albedo = b->albedo * scale;
+  s->albedo = b->albedo * scale_of_material;
 #ifdef HAS_RADIOSITY
-  s->irradiance = b->irradiance * scale;
+  s->irradiance = b->irradiance * scale_of_material;
 #endif
 #ifdef HAS_CAUSTICS
-  s->caustic = b->caustic * scale;
+  s->caustic = b->caustic * scale_of_material;
 #endif
   s->radius = b->radius;
   s->splat = b->splat;

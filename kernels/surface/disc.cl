@@ -1,4 +1,4 @@
-/* One ray against one disc. */
+/* One ray against one disc; kernels/surface/disc_lanes.cl is the same in vectors. */
 #include "lib/vector.cl"
 
 /* t at which o + t d meets the plane of the disc (centre c.xyz, normal n), n.(c-o) / n.d (method.md section 6), and the
@@ -14,7 +14,7 @@ static inline float ray_plane(float3 o, float3 d, float4 c, float3 n, float* dis
 /* t of the hit of o + t d with the disc (centre c.xyz, radius c.w, normal n), or a value that fails every comparison
  * t > t_min. A ray parallel to the disc misses: inf and NaN fail the comparison of the distance. *q is the distance from
  * the centre squared over the radius squared, in [0, 1] for a hit. */
-static inline float ray_disc(float3 o, float3 d, float4 c, float3 n, float* q) {
+static inline float meet(float3 o, float3 d, float4 c, float3 n, float* q) {
   float distance2;
   const float t = ray_plane(o, d, c, n, &distance2), r2 = c.w * c.w;
   *q = distance2 / r2;

@@ -4,6 +4,7 @@
 #include "lib/pools.cl"
 #include "lib/ray.cl"
 #include "surface/disc.cl"
+#include "surface/own_surface.cl"
 
 static inline RayAnswer nearest_of_all(const __global float4* points, uint point_count, const __global RayQuery* ray,
                                        bool leaves, ShadowEnds ends) {
@@ -13,7 +14,7 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
     const float4 centre = points[POINT_TEXELS * k];
     const float4 normal = points[POINT_TEXELS * k + 1u];
     float q;
-    const float t = ray_disc(origin, direction, centre, normal.xyz, &q);
+    const float t = meet(origin, direction, centre, normal.xyz, &q);
     if (t > ray->t_min && t < best.t && !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
       best.t = t;
       best.splat = k;

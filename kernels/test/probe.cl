@@ -1,8 +1,11 @@
 /* Probes: what the device itself makes of shared structs and small functions. For tests. */
+#define WITH_PHONG 1
+#define WITH_CONDUCTOR 1
+#include "materials/conductor.cl"
 #include "materials/media.cl"
 #include "traverse/octree_descent.cl"
 #include "materials/phong.cl"
-#include "lib/rng.cl"
+#include "lib/sampling.cl"
 #include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
@@ -113,4 +116,15 @@ __kernel void probe_media(const __global ulong* steps, __global uint4* media, ui
       in = step < 128u ? within_medium(in, step) : without_medium(in, step - 128u);
   }
   media[i] = in;
+}
+
+/* places[samples * i + s] = place of sample s of pixel i, of a pixel's `samples`. */
+__kernel void probe_places(__global float2* places, uint samples, uint seed, uint jitter, uint count) {
+  const uint i = get_global_id(0);
+  if (i >= count)
+    return;
+  for (uint s = 0u; s < samples; ++s) {
+    const SampleId id = {(uint2)(i % 64u, i / 64u), s, seed, 0u};
+    places[samples * i + s] = place_in_pixel(id, samples, jitter != 0u);
+  }
 }

@@ -6,8 +6,7 @@
  *                      thin cells are jumped over when delta is large, and the ray may stall when it is small
  * What every form gives: trace_closest, trace_closest_from, trace_any, blend_others (kernels/traverse/traversal.cl). */
 #include "traverse/octree_descent.cl"
-#include "surface/disc.cl"
-#include "surface/blend.cl"
+#include "surface/surface.cl"
 
 #define FINEST_CELLS (1 << MAX_AXIS_BITS)
 #define FINEST_SIDE 0x1p-21f /* 1 / FINEST_CELLS */
@@ -103,8 +102,8 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       float q;
-      const float t = ray_disc(ray.origin, ray.direction, pool_point_texel(POINT_TEXELS * i),
-                               pool_point_texel(POINT_TEXELS * i + 1u).xyz, &q);
+      const float t = meet(ray.origin, ray.direction, pool_point_texel(POINT_TEXELS * i),
+                           pool_point_texel(POINT_TEXELS * i + 1u).xyz, &q);
       if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat))) {
         best.t = t;
         best.splat = i;
@@ -127,7 +126,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
       const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
-      const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
+      const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
       if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
           !belongs_to_origin(ends, ray.direction, t, centre.w, normal)) {
         best.t = t;
@@ -150,7 +149,7 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
       const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
       float q;
-      const float t = ray_disc(ray.origin, ray.direction, centre, normal, &q);
+      const float t = meet(ray.origin, ray.direction, centre, normal, &q);
       if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.direction, ray.t_max, t, centre.w, normal))
         return true;
     })
@@ -169,9 +168,9 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
       const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
-      const float t = ray_disc(ray.origin, ray.direction, centre, normal.xyz, &q);
+      const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
       if (t >= t_from && t < walk.t_exit && t >= blend->t_first && t < blend->t_end && i != blend->splat)
-        blend_add(POOL_ARGS, blend, ray, i, t, q, normal.xyz, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+        blend_add(POOL_ARGS, blend, ray, i, t, q, normal, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
     })
     t_from = walk.t_exit;
   } while (walk.t_exit < blend->t_end && walk_next(POOL_ARGS, &walk));

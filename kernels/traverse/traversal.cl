@@ -6,20 +6,14 @@
 #if defined(HAS_SPECULAR) && !defined(BOUNCED_RAYS)
 #define BOUNCED_RAYS
 #endif
-#include "surface/blend.cl"
-#include "lib/lanes8.cl"
 #include "lib/pools.cl"
+#include "surface/surface.cl"
 #if TRAVERSAL_FORM == FORM_WIDE
 #include "traverse/wide_traversal.cl"
 #else
 #include "traverse/step_traversal.cl"
 #endif
 
-/* Where a surface bends away from the viewer, rims of discs from behind its horizon stick out, and a ray meets their
- * backs although the surface has none there. The middle of such a disc is hidden behind a front side close before it,
- * its own surface's; that of a disc on the inside of an open surface is not. */
-/* How close, in units of the two discs' radii: across what is thin, an ear or a hoof, but not across a vessel. */
-#define RIM_REACH 8.0f
 #define MAX_RIMS 16 /* rims, one behind another, that a ray passes; the last one then counts */
 
 /* trace_closest, or trace_closest_from in programs whose rays also leave surfaces: one walk in the code, not two. */
@@ -31,15 +25,14 @@ static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 #endif
 }
 
-/* Whether the back of the disc `centre` is such a rim. */
+/* Whether the back of the disc `centre` is a rim that sticks out. */
 static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 centre) {
-  ray.direction = centre.xyz - ray.origin;
-  const float distance = sqrt(dot3(ray.direction, ray.direction));
-  ray.direction /= distance;
-  ray.t_max = distance - 0.05f * centre.w; /* what passes through the middle itself hides nothing */
-  const Hit hit = trace_closest_of(POOL_ARGS, ray, ends);
-  return hit.splat != NO_SPLAT && dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f &&
-         distance - hit.t < RIM_REACH * (centre.w + pool_point_texel(POINT_TEXELS * hit.splat).w);
+  float distance;
+  const Ray to_middle = rim_ray(ray, centre, &distance);
+  const Hit hit = trace_closest_of(POOL_ARGS, to_middle, ends);
+  return hit.splat != NO_SPLAT && hides_rim(to_middle.direction, distance, centre.w, hit.t,
+                                            pool_point_texel(POINT_TEXELS * hit.splat),
+                                            pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz);
 }
 
 #ifdef HAS_SPECULAR
@@ -53,7 +46,7 @@ static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, flo
   ends.origin_back = dot3(normal.xyz, ray.direction) < 0.0f ? 1u : 0u;
   ends.origin_through = 1u;
   ray.origin = fma((float3)(hit.t), ray.direction, ray.origin);
-  ray.t_min = -SEGMENT_MARGIN;
+  ray.t_min = -SEGMENT_MARGIN(ends.origin_radius);
   ray.t_max = reach;
   Hit behind = trace_closest_from(POOL_ARGS, ray, ends);
   behind.t += hit.t;
@@ -69,7 +62,7 @@ static inline bool is_of_medium(POOL_PARAMS, ShadowEnds ends, uint splat) {
 static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
   if (ends.medium == 0u || hit.splat == NO_SPLAT || is_of_medium(POOL_ARGS, ends, hit.splat))
     return hit;
-  const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN);
+  const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN(pool_point_texel(POINT_TEXELS * hit.splat).w));
   return behind.splat != NO_SPLAT && is_of_medium(POOL_ARGS, ends, behind.splat) ? behind : hit;
 }
 #endif
@@ -79,7 +72,7 @@ static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
 static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float* rays) {
   Ray rest = ray;
   for (int k = 0; k < MAX_RIMS; ++k) {
-    if (hit.splat == NO_SPLAT || dot3(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction) < 0.0f)
+    if (hit.splat == NO_SPLAT || !is_back(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction))
       break;
 #ifdef HAS_SPECULAR
     /* From inside glass its backs are what there is to see. */

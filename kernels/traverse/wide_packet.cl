@@ -155,14 +155,14 @@ static inline lanes_i groups_met(const __global float* block, const PacketBounds
   return met;
 }
 
-/* One disc against one group of rays, as ray_disc. */
+/* One splat against one group of rays. */
 static inline void hit_group(const RayPacket* p, int group, float3 centre, float radius, float3 normal, uint index,
                              PacketHits* best) {
-  const float16 dx = p->x[group], dy = p->y[group], dz = p->z[group], t_best = best->t[group];
+  const float16 t_best = best->t[group];
   const uint16 splat_best = best->splat[group];
-  const float16 t = dot3(normal, centre) / fma((float16)(normal.x), dx, fma((float16)(normal.y), dy, normal.z * dz));
-  const float16 x = fma(t, dx, (float16)(-centre.x)), y = fma(t, dy, (float16)(-centre.y)), z = fma(t, dz, (float16)(-centre.z));
-  const int16 nearer = (fma(x, x, fma(y, y, z * z)) <= radius * radius) & (t > p->t_min) &
+  int16 inside;
+  const float16 t = meet_rays(p->x[group], p->y[group], p->z[group], centre, radius, normal, &inside);
+  const int16 nearer = inside & (t > p->t_min) &
                        ((t < t_best) | ((t == t_best) & (as_int16((uint16)(index) < splat_best))));
   best->t[group] = select(t_best, t, nearer);
   best->splat[group] = select(splat_best, (uint16)(index), nearer);

@@ -1,48 +1,12 @@
 /* The wide form of the octree: one ray against eight child boxes and WIDE_LANES splats at a time, near children first.
  * Written in vectors of the language, because CPU compilers do not vectorise diverging work-items; for devices whose
  * work-items have vector registers of their own.
- *   WIDE_LANES  splats a block, 8 or 16
  * What every form gives: trace_closest, trace_closest_from, trace_any, blend_others (kernels/traverse/traversal.cl). */
-#ifndef WIDE_LANES
-#define WIDE_LANES 8
-#endif
-#include "surface/blend.cl"
-#include "lib/lanes8.cl"
+#include "lib/lanes.cl"
 #include "lib/pools.cl"
-
-#if WIDE_LANES == 16
-typedef float16 lanes_f;
-typedef int16 lanes_i;
-typedef uint16 lanes_u;
-#define load_lanes(p) vload16(0, p)
-#define store_lanes(v, p) vstore16(v, 0, p)
-#define as_lanes_i as_int16
-#define LANE_NUMBERS ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
-#define HALVES(op, v) op((v).lo, (v).hi)
-#else
-typedef float8 lanes_f;
-typedef int8 lanes_i;
-typedef uint8 lanes_u;
-#define load_lanes(p) vload8(0, p)
-#define store_lanes(v, p) vstore8(v, 0, p)
-#define as_lanes_i as_int8
-#define LANE_NUMBERS ((uint8)(0, 1, 2, 3, 4, 5, 6, 7))
-#define HALVES(op, v) (v)
-#endif
-
-#if WIDE_LANES == 16
-static inline bool any_lane(lanes_i v) { return byte_a_lane(v.lo | v.hi) != 0ul; }
-#else
-static inline bool any_lane(lanes_i v) { return byte_a_lane(v) != 0ul; }
-#endif
-
-static inline float smallest_lane(lanes_f v) { return smallest8(HALVES(min, v)); }
-
-static inline uint smallest_lane_u(lanes_u v) {
-  const uint8 a = HALVES(min, v);
-  const uint4 b = min(a.lo, a.hi);
-  return min(min(b.x, b.y), min(b.z, b.w));
-}
+#include "surface/surface.cl"
+#include "surface/disc_lanes.cl"
+#include "surface/own_surface_lanes.cl"
 
 /* A ray as the box tests take it. */
 typedef struct WideRay {
@@ -139,33 +103,6 @@ static inline uint next_leaf(const __global WideNode* nodes, WideRay ray, WideWa
   return 0u;
 }
 
-/* One block of splats against the ray: ray_disc in lanes, to the same bits. */
-typedef struct BlockHits {
-  lanes_f t, q, radius, nx, ny, nz;
-  lanes_i inside; /* the ray's plane hit lies on the disc */
-  uint first;     /* index of lane 0 in the point pool */
-} BlockHits;
-
-static inline BlockHits hit_block(const __global float* block, float3 origin, float3 direction) {
-  BlockHits h;
-  const lanes_f cx = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - origin.x;
-  const lanes_f cy = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - origin.y;
-  const lanes_f cz = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 2)) - origin.z;
-  h.radius = load_lanes(block + WIDE_RADIUS(WIDE_LANES));
-  h.nx = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 0));
-  h.ny = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 1));
-  h.nz = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 2));
-  h.t = fma(h.nx, cx, fma(h.ny, cy, h.nz * cz)) /
-        fma(h.nx, (lanes_f)(direction.x), fma(h.ny, (lanes_f)(direction.y), h.nz * direction.z));
-  const lanes_f ox = fma(h.t, (lanes_f)(direction.x), -cx), oy = fma(h.t, (lanes_f)(direction.y), -cy),
-                oz = fma(h.t, (lanes_f)(direction.z), -cz);
-  const lanes_f distance2 = fma(ox, ox, fma(oy, oy, oz * oz)), r2 = h.radius * h.radius;
-  h.q = distance2 / r2;
-  h.inside = (distance2 <= r2) & (h.radius > 0.0f);
-  h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
-  return h;
-}
-
 #define FOR_BLOCKS_OF_LEAF(leaf, block, body)                                              \
   {                                                                                        \
     const uint block_count_ = ((leaf) & ~WIDE_LEAF) >> 24;                                 \
@@ -181,7 +118,7 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_u index = h.first + LANE_NUMBERS;
       const lanes_i nearer = h.inside & (h.t > ray.t_min) &
                              ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
@@ -195,41 +132,6 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   return best;
 }
 
-/* belongs_to_end in lanes, to the same answers. */
-static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float steepness, lanes_f distance,
-                                   const BlockHits* h) {
-  const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
-                             fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
-  return ((steepness * distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
-         ((distance < COINCIDENT) & (cosine < -SELF_HIT_COSINE));
-}
-
-#ifndef HAS_SPECULAR
-/* belongs_to_origin in lanes. */
-static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
-  const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
-  return lanes_of_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), h->t, h) &
-         ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
-}
-#define LANES_OF_ORIGIN(h, met) lanes_of_origin(ends, ray.direction, h)
-#else
-/* belongs_to_origin of the lanes that are met, one after another: few are, near the start of a ray, and blocks do not
- * hold materials. */
-static inline lanes_i lanes_of_origin(POOL_PARAMS, ShadowEnds ends, float3 direction, const BlockHits* h, lanes_i met) {
-  float t_of[WIDE_LANES];
-  uint belong = 0u; /* bit k: lane k does */
-  store_lanes(select((lanes_f)(INFINITY), h->t, met), t_of);
-  for (uint lane = 0u; lane < WIDE_LANES; ++lane)
-    if (t_of[lane] < INFINITY) {
-      const uint i = POINT_TEXELS * (h->first + lane);
-      if (belongs_to_origin(ends, direction, t_of[lane], pool_point_texel(i).w, pool_point_texel(i + 1u)))
-        belong |= 1u << lane;
-    }
-  return (((lanes_u)(belong) >> LANE_NUMBERS) & 1u) != 0u;
-}
-#define LANES_OF_ORIGIN(h, met) lanes_of_origin(POOL_ARGS, ends, ray.direction, h, met)
-#endif
-
 /* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
 static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   Hit best = {ray.t_max, NO_SPLAT};
@@ -237,7 +139,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_u index = h.first + LANE_NUMBERS;
       const lanes_i met = h.inside & (h.t > ray.t_min) &
                           ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
@@ -262,7 +164,7 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
       if (any_lane(hit) &&
           any_lane(hit & ~lanes_of_end(ends.origin_normal, ends.origin_radius, at_origin, h.t, &h) &
@@ -279,7 +181,7 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = hit_block(block, ray.origin, ray.direction);
+      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_i counts = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
                              as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
       if (any_lane(counts)) {
@@ -290,7 +192,7 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
         for (uint lane = 0u; lane < WIDE_LANES; ++lane)
           if (t_of[lane] > -INFINITY) {
             const uint i = h.first + lane;
-            blend_add(POOL_ARGS, blend, ray, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u).xyz,
+            blend_add(POOL_ARGS, blend, ray, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u),
                       pool_point_texel(POINT_TEXELS * i + 2u).xyz);
           }
       }

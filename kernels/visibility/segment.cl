@@ -12,8 +12,9 @@ static inline bool segment_blocked(POOL_PARAMS, const __global OctreePoint* from
   if (distance == 0.0f)
     return false;
   ray.direction /= distance;
-  ray.t_min = -SEGMENT_MARGIN;
-  ray.t_max = distance + SEGMENT_MARGIN;
+  const float margin = SEGMENT_MARGIN(from->radius + to->radius);
+  ray.t_min = -margin;
+  ray.t_max = distance + margin;
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
 #endif

@@ -20,7 +20,8 @@ bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& direction,
   const double across = std::abs(vector_of(end.normal).dot(direction));
   const double steepness = std::max(1.0, SELF_HIT_REACH / SELF_HIT_HEIGHT * across);
   const double reach = SELF_HIT_REACH * (static_cast<double>(end.radius) + hit.radius);
-  return (steepness * t < reach && cosine > SELF_HIT_COSINE) || (t < COINCIDENT && cosine < -SELF_HIT_COSINE);
+  return (steepness * t < reach && cosine > SELF_HIT_COSINE) ||
+         (t < COINCIDENT(end.radius + hit.radius) && cosine < -SELF_HIT_COSINE);
 }
 
 } // namespace
@@ -29,10 +30,11 @@ bool segment_blocked(View<Splat> splats, const Splat& from, const Splat& to) {
   const Vector origin = vector_of(from.position), between = vector_of(to.position) - origin;
   const double length = between.norm();
   const Vector direction = between / length;
+  const double margin = SEGMENT_MARGIN(from.radius + to.radius);
   for (const Splat& s : splats) {
     const Vector normal = vector_of(s.normal), offset = vector_of(s.position) - origin;
     const double t = normal.dot(offset) / normal.dot(direction);
-    if (!(t > -SEGMENT_MARGIN && t < length + SEGMENT_MARGIN)) continue;
+    if (!(t > -margin && t < length + margin)) continue;
     if ((t * direction - offset).squaredNorm() > static_cast<double>(s.radius) * s.radius) continue;
     if (!belongs_to_end(from, s, direction, t, normal.dot(vector_of(from.normal))) &&
         !belongs_to_end(to, s, direction, length - t, normal.dot(vector_of(to.normal))))

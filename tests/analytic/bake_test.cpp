@@ -20,12 +20,14 @@ struct LitPoint {
   float radiosity[3];
 };
 
-std::vector<LitPoint> bake(const std::string& scene, const std::vector<std::string>& set = {}) {
+std::vector<LitPoint> bake(const std::string& scene, const std::vector<std::string>& set = {},
+                           const std::string& quality = "normal") {
   const TemporaryFolder folder;
   BakeOptions options;
   options.input = folder.write("scene.toml", scene);
   options.output = folder.file("lit.ply");
   options.overrides = set;
+  options.quality = quality;
   options.quiet = true;
   if (run_bake(options) != ExitCode::done) throw std::runtime_error("the cloud was not finished");
   const std::string text = contents(options.output);
@@ -67,7 +69,7 @@ TEST_CASE("a baked furnace: B = pi L / (1 - rho) at every point, and its colour"
       CHECK(p.colour[c] == Approx(255.0 * linear_to_srgb(shown)).margin(0.51)); // to the nearest byte
     }
   }
-  // Areas of the samples 1 % (truths.md §1), each bounce repeats it; 16 estimates of direct light a point.
+  // Areas of the samples 1 % (truths.md §1), each bounce repeats it; 64 estimates of direct light a point.
   CHECK(mean[0] == Approx(pi * 0.1 / 0.5).epsilon(0.02));
   CHECK(mean[1] == Approx(pi * 0.2 / 0.5).epsilon(0.02));
   CHECK(mean[2] == Approx(pi * 0.3).epsilon(1e-5)); // black in blue: what it shines with, and nothing else
@@ -79,4 +81,43 @@ TEST_CASE("baked radiosity is linear in the light, beyond what a byte shows") {
   for (std::size_t i = 0; i < lit.size(); ++i)
     for (int c = 0; c < 3; ++c)
       REQUIRE(bright[i].radiosity[c] == Approx(1e11 * lit[i].radiosity[c]).epsilon(1e-5)); // float rounding
+}
+
+TEST_CASE("noise of a lit cloud under an area lamp falls with the light samples, which follow the quality") {
+  // A floor below a lamp: what its points send on meets nothing, so the noise is that of the direct light alone.
+  const std::string scene =
+      "version = 1\n[[material]]\nname = \"floor\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+      "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\nemission = [5.0, 5.0, 5.0]\n"
+      "[[shape]]\ntype = \"quad\"\ncorner = [-1.0, 0.0, -1.0]\nedge_u = [0.0, 0.0, 2.0]\nedge_v = [2.0, 0.0, 0.0]\n"
+      "spacing = 0.1\nmaterial = \"floor\"\n"
+      "[[shape]]\ntype = \"quad\"\ncorner = [-0.5, 0.5, -0.5]\nedge_u = [1.0, 0.0, 0.0]\nedge_v = [0.0, 0.0, 1.0]\n"
+      "spacing = 0.05\nmaterial = \"lamp\"\n";
+  // Relative standard deviation of a point: half the mean square of the difference of two seeds.
+  const auto deviation = [&](const std::string& quality, std::vector<std::string> set = {}) {
+    std::array<std::vector<LitPoint>, 2> of_seed;
+    for (unsigned seed = 0; seed < 2; ++seed) {
+      std::vector<std::string> with_seed = set;
+      with_seed.push_back("render.seed=" + std::to_string(seed + 1));
+      of_seed[seed] = bake(scene, with_seed, quality);
+    }
+    REQUIRE(of_seed[0].size() == of_seed[1].size());
+    double squares = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < of_seed[0].size(); ++i) {
+      const double a = of_seed[0][i].radiosity[1], b = of_seed[1][i].radiosity[1];
+      REQUIRE(of_seed[0][i].position == of_seed[1][i].position);
+      if (of_seed[0][i].position.y() > 0.25) continue; // the lamp
+      squares += 2.0 * (a - b) * (a - b) / ((a + b) * (a + b));
+      count += 1.0;
+    }
+    return std::sqrt(squares / count);
+  };
+  const double draft = deviation("draft"), normal = deviation("normal"), high = deviation("high");
+  CAPTURE(draft, normal, high);
+  CHECK(draft > 0.005); // or there is nothing to compare
+  // As 1 / sqrt(samples) or faster, as they are stratified; of 400 points' deviation a tenth is chance.
+  CHECK(normal < 0.5 * 1.15 * draft);
+  CHECK(high < 0.5 * 1.15 * normal);
+  CHECK(deviation("draft", {"radiosity.light_samples=256"}) == high); // the scene's word, whatever the quality
+  // Without an exchange it is the same light.
+  CHECK(deviation("normal", {"radiosity.method=none"}) == Approx(normal).epsilon(0.15));
 }

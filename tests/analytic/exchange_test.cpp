@@ -1,11 +1,11 @@
 /// What is known of light between surfaces (truths.md section 1), through V-map, lists and FMM as the device runs them.
 #include "host/passes/build_pools.h"
 #include "host/radiosity/fmm.h"
-#include "host/radiosity/radiosity.h"
 #include "host/tune/variant_list.h"
 #include "tests/support/cache_folder.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"
+#include "tests/support/radiosity.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -68,7 +68,9 @@ std::vector<Splat> of_albedo(std::vector<Splat> splats, float r, float g, float 
 std::array<double, 3> furnace_errors(const std::vector<Splat>& splats, const RadiositySettings& settings) {
   const Exchange room(of_albedo(splats, 0.5f, 0.9f, 0.99f), settings);
   const std::vector<float> dark(3 * room.points().size, 0.0f), emitted(3 * room.points().size, 1.0f);
-  const RadiosityField field = solve_radiosity_field(session(), room.map, {dark, emitted}, room.settings, quiet);
+  const auto prepared = radiosity_method("fmm")->prepare(session(), {room.on_device, room.variant, room.points(), {}},
+                                                         room.settings, room.map, quiet);
+  const RadiosityField field = prepared->solve({dark, emitted}, room.settings.tolerance, quiet);
   REQUIRE(field.solution.end == SolveEnd::converged);
   std::array<double, 3> errors{}, sums{};
   double area = 0.0;

@@ -107,8 +107,11 @@ TEST_CASE("radiosity.method = direct: no V-map, a ray a pair, the picture of fmm
   CHECK(found.count("vmap") == 0);
   for (const auto& stage : found["stages"]) {
     if (stage["name"] == "vmap") CHECK_THAT(std::string(stage["reason"]), Catch::Contains("a ray for every pair"));
-    if (stage["name"] == "fmm") CHECK(stage["ran"] == true);
+    if (stage["name"] == "direct") CHECK(stage["ran"] == true);
+    CHECK(stage["name"] != "fmm");
   }
+  CHECK(std::count_if(found["stages"].begin(), found["stages"].end(),
+                      [](const auto& stage) { return stage["name"] == "direct"; }) == 1);
 }
 
 TEST_CASE("direct_light = radiosity: the thesis' picture without shadow rays, near that with them") {

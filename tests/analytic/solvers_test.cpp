@@ -1,9 +1,9 @@
 /// The fast solver against the exact one, point by point (method.md section 4).
-#include "host/radiosity/radiosity.h"
 #include "tests/support/cache_folder.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"
 #include "tests/support/lit_room.h"
+#include "tests/support/radiosity.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -15,10 +15,11 @@ TEST_CASE("fmm and V-map as they come are within 1 % of the direct solver: room 
   RadiositySettings settings;
   const ExchangeScene scene{room.pools, room.variant, room.points, {}};
   const auto silent = [](const std::string&) {};
-  const RadiosityMap map = map_visibility(session(), scene, settings, silent);
-  const RadiosityField fast = solve_radiosity_field(session(), map, {room.direct, {}}, settings, silent);
-  settings.method = "direct";
-  const RadiosityField exact = solve_radiosity_directly(session(), scene, {room.direct, {}}, settings, silent);
+  const auto solve = [&](const char* method) {
+    settings.method = method;
+    return prepare_radiosity(session(), scene, settings)->solve({room.direct, {}}, settings.tolerance, silent);
+  };
+  const RadiosityField fast = solve("fmm"), exact = solve("direct");
   REQUIRE(fast.solution.end == SolveEnd::converged);
   REQUIRE(exact.solution.end == SolveEnd::converged);
   const double of_b = relative_l2(room.radiosity(fast.irradiance), room.radiosity(exact.irradiance));

@@ -19,8 +19,8 @@ namespace {
 
 /// Seconds of a picture, from the prepared cloud on: normals fitted, light solved, pixels made.
 struct Seconds {
-  double vmap = 0.0, fmm = 0.0, photon = 0.0, other = 0.0, pixels = 0.0;
-  double light() const { return vmap + fmm + photon + other; }
+  double vmap = 0.0, exchange = 0.0, photon = 0.0, other = 0.0, pixels = 0.0;
+  double light() const { return vmap + exchange + photon + other; }
   double all() const { return light() + pixels; }
 };
 
@@ -53,10 +53,10 @@ public:
     if (!solved.light.indirect.from_surfaces.empty())
       solved.irradiance = upload_irradiance(session_, solved.light.indirect, scene_);
     for (const StageRecord& stage : stages.records())
-      (stage.name == "vmap"     ? solved.seconds.vmap
-       : stage.name == "fmm"    ? solved.seconds.fmm
-       : stage.name == "photon" ? solved.seconds.photon
-                                : solved.seconds.other) += stage.seconds;
+      (stage.name == "vmap"                    ? solved.seconds.vmap
+       : stage.name == scene_.radiosity.method ? solved.seconds.exchange
+       : stage.name == "photon"                ? solved.seconds.photon
+                                               : solved.seconds.other) += stage.seconds;
     solved.seconds.other += stages.seconds() - solved.seconds.light();
     return solved;
   }
@@ -193,7 +193,7 @@ Target choose_target(Bench& bench, const Solved& solved, const Reference& refere
 
 void print_ours(const char* what, const Seconds& s) {
   std::printf("  %s: V-map %.2f + exchange %.2f + photons %.2f + other %.2f + pixels %.2f = %.2f s\n", what, s.vmap,
-              s.fmm, s.photon, s.other, s.pixels, s.all());
+              s.exchange, s.photon, s.other, s.pixels, s.all());
 }
 
 /// What a side's pictures cost: the light, and the pixels.

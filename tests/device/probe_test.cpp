@@ -6,7 +6,9 @@
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <random>
 
 using namespace pointgi;
@@ -125,4 +127,61 @@ TEST_CASE("random numbers are the published hash's") {
   const auto found = device.download(values, count);
   for (cl_uint i = 0; i < count; ++i)
     REQUIRE(std::vector<std::uint32_t>(found[i].s, found[i].s + 4) == truth(i));
+}
+
+namespace {
+
+/// Places of all samples of `pixels` pixels, pixel after pixel.
+std::vector<cl_float2> places_of(cl_uint pixels, cl_uint samples, cl_uint seed, bool jitter) {
+  Session& device = session();
+  const auto places = device.allocate<cl_float2>(std::size_t{pixels} * samples);
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_places");
+  device.launch(kernel, LaunchShape::line(pixels), places, samples, seed, jitter ? 1u : 0u, pixels);
+  return device.download(places, std::size_t{pixels} * samples);
+}
+
+int stratum(float place, cl_uint strata) {
+  return static_cast<int>(place * static_cast<float>(strata));
+}
+
+} // namespace
+
+TEST_CASE("every part of a pixel is sampled alike, whatever the number of samples") {
+  const cl_uint pixels = 4096, samples = GENERATE(1u, 3u, 5u, 7u, 12u, 20u, 24u, 25u, 31u, 32u, 48u, 50u);
+  constexpr int cells = 12; // a side; no multiple of most numbers of strata, nor they of it
+  std::vector<double> found(cells * cells);
+  for (const cl_uint seed : {1u, 2u})
+    for (const cl_float2& p : places_of(pixels, samples, seed, true)) {
+      REQUIRE((p.s[0] >= 0.0f && p.s[0] < 1.0f && p.s[1] >= 0.0f && p.s[1] < 1.0f));
+      found[static_cast<std::size_t>(cells * stratum(p.s[1], cells) + stratum(p.s[0], cells))] += 1.0;
+    }
+  const double expected = 2.0 * pixels * samples / (cells * cells);
+  double chi2 = 0.0;
+  for (const double n : found)
+    chi2 += (n - expected) * (n - expected) / expected;
+  CAPTURE(samples);
+  const double freedom = cells * cells - 1; // of independent samples; strata make it less
+  CHECK(chi2 < freedom + 4.0 * std::sqrt(2.0 * freedom));
+}
+
+TEST_CASE("the last samples of a pixel are spread over it, and so are the first of these") {
+  const bool jitter = GENERATE(true, false);
+  const cl_uint samples = GENERATE(3u, 5u, 6u, 12u, 20u, 24u, 25u, 31u, 35u, 56u, 63u), n = samples % 32u;
+  const cl_uint pixels = 64;
+  const auto places = places_of(pixels, samples, 7, jitter);
+  CAPTURE(samples, jitter);
+  for (cl_uint pixel = 0; pixel < pixels; ++pixel)
+    for (int axis = 0; axis < 2; ++axis) {
+      std::vector<int> of_stratum(n);
+      int below = 0;
+      for (cl_uint k = 0; k < n; ++k) {
+        const float at = places[samples * pixel + samples - n + k].s[axis];
+        of_stratum[static_cast<std::size_t>(stratum(at, n))] += 1;
+        below += at < 0.5f;
+        // A prefix of the sequences leaves one half ahead by two samples at most, their shift round the pixel by two
+        // more.
+        REQUIRE(std::abs(2 * below - static_cast<int>(k + 1)) <= 4);
+      }
+      REQUIRE(of_stratum == std::vector<int>(n, 1));
+    }
 }

@@ -26,7 +26,7 @@ struct Ball {
     scene.camera.position = {0.5, 0.5, 2.5};
     scene.camera.look_at = {0.5, 0.5, 0.5};
     scene.materials.emplace_back();
-    scene.lights.push_back({PointLight{{0.9, 0.9, 2.0}, {1.0, 1.0, 1.0}}, {}});
+    scene.lights.push_back({LightType::point, false, {0.9, 0.9, 2.0}, {0.08, 0.08, 0.08}, 0.0, {}});
   }
 
   ProfileRequest request() const {

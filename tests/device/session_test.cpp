@@ -2,7 +2,9 @@
 #include "host/error.h"
 #include "host/passes/variant.h"
 #include "tests/support/device.h"
+#include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
+#include <set>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -62,4 +64,21 @@ TEST_CASE("devices are chosen by index, kind and part of the name") {
   CHECK(choose_device(devices[0].info.name.substr(1, 5)).info.name == devices[0].info.name);
   CHECK_THROWS_WITH(choose_device("99"), Catch::Contains("there is:") && Catch::Contains(devices[0].info.name));
   CHECK_THROWS_AS(choose_device("no such device"), Error);
+}
+
+TEST_CASE("programs of one file and several options are dumped side by side") {
+  const TemporaryFolder folder;
+  Session dumping(choose_device(""));
+  dumping.dump_kernels_to(folder.file("dump"));
+  for (const char* more : {"", " -D ONE", " -D TWO", ""})
+    dumping.program("test/probe.cl", build_options(TraversalVariant{}) + more);
+  std::set<std::string> options;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.file("dump"))) {
+    CHECK(entry.path().extension() == ".cl");
+    std::ifstream file(entry.path());
+    std::string first;
+    std::getline(file, first);
+    options.insert(first);
+  }
+  CHECK(options.size() == 3);
 }

@@ -41,6 +41,7 @@ std::vector<RayEnd> trace(const std::vector<Splat>& splats, const TraversalVaria
     std::copy_n(slopes[i].slope, 4, texels[i].s);
   Material glass{};
   glass.type = MATERIAL_GLASS;
+  glass.flags = MATERIAL_SPECULAR | MATERIAL_TRANSMITS;
   glass.ior = ior;
   const auto field = device.upload(texels);
   const auto materials = device.upload(&glass, 1);

@@ -2,16 +2,17 @@
 /// error that says where.
 #include "host/cloud/readers/ply.h"
 #include "host/error.h"
+#include "tests/support/mutator.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/scans.h"
 #include "tests/support/temporary_folder.h"
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <random>
 
 using namespace pointgi;
 using pointgi::test::bytes_of;
 using pointgi::test::contents;
+using pointgi::test::Mutator;
 using pointgi::test::TemporaryFolder;
 
 namespace {
@@ -83,65 +84,6 @@ bool survives(const std::string& path, std::size_t file_size) {
     return false;
   }
 }
-
-class Mutator {
-public:
-  explicit Mutator(std::uint32_t seed) : random_(seed) {}
-
-  /// One to four changes of the kinds that damage, truncation and malice make.
-  std::string operator()(std::string bytes) {
-    for (std::uint32_t change = 0, changes = 1 + below(4); change < changes && !bytes.empty(); ++change)
-      change_once(bytes);
-    return bytes;
-  }
-
-private:
-  std::uint32_t below(std::size_t end) {
-    return static_cast<std::uint32_t>(random_() % end);
-  } // portable, unlike a
-    // distribution
-  void change_once(std::string& bytes) {
-    const std::size_t at = below(bytes.size());
-    switch (below(7)) {
-    case 0:
-      bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-      break;
-    case 1:
-      bytes[at] = static_cast<char>(below(256));
-      break;
-    case 2:
-      bytes.resize(at);
-      break;
-    case 3:
-      bytes.insert(at, std::string(1 + below(8), static_cast<char>(below(256))));
-      break;
-    case 4:
-      bytes.erase(at, 1 + below(16));
-      break;
-    case 5:
-      bytes.insert(at, bytes.substr(below(bytes.size()), below(64)));
-      break;
-    default:
-      swap_number(bytes);
-    }
-  }
-
-  /// Puts a nasty number or word in the place of a number or word of the header.
-  void swap_number(std::string& bytes) {
-    static const std::vector<std::string> nasty{
-        "0",     "-1",   "255",  "65536", "2147483648", "4294967297", "18446744073709551615",
-        "1e30",  "1,5",  "nan",  "inf",   "1.0",        "vertex",     "face",
-        "float", "char", "list", "x",     "",           "\r"};
-    const std::size_t header = std::min(bytes.find("end_header"), bytes.size());
-    std::size_t start = below(header + 1);
-    start = bytes.find_first_not_of(" \n", start);
-    if (start == std::string::npos) return;
-    const std::size_t end = std::min(bytes.find_first_of(" \n", start), bytes.size());
-    bytes.replace(start, end - start, nasty[below(nasty.size())]);
-  }
-
-  std::mt19937 random_;
-};
 
 } // namespace
 

@@ -296,7 +296,10 @@ TEST_CASE("dumped kernels hold what the scene needs and no more") {
   REQUIRE(
       run_program("render " + scene + " -o " + folder.file("x.exr") + " --dump-kernels " + folder.file("dump")).code ==
       0);
-  std::ifstream file(folder.file("dump/render_shade.cl"));
+  std::string shade;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.file("dump")))
+    if (entry.path().filename().string().rfind("render_shade-", 0) == 0) shade = entry.path().string();
+  std::ifstream file(shade);
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string options = text.substr(0, text.find('\n'));
   CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT") &&
@@ -320,6 +323,10 @@ TEST_CASE("info tells what a file holds, and devices list and check") {
   const Run devices = run_program("devices --json");
   CHECK(devices.code == 0);
   CHECK(nlohmann::json::parse(devices.out).size() >= 1);
+  const Run named = run_program("devices --json", "POINTGI_DEVICE=quantum");
+  CHECK(named.code == 4);
+  CHECK_THAT(named.err, Contains("quantum"));
+  CHECK(run_program("devices --json --device 0", "POINTGI_DEVICE=quantum").code == 0);
 }
 
 TEST_CASE("every sample file of other projects ends with 0 or 3 and a place in its message") {

@@ -177,6 +177,6 @@ TEST_CASE("a million lights load", "[scene][golden]") {
     text += "[[light]]\ntype = \"point\"\nposition = [" + std::to_string(i) + ", 2.5, 0]\npower_w = [1, 1, 1]\n";
   const Scene scene = load_scene(scratch.write("lights.toml", text).string());
   REQUIRE(scene.lights.size() == static_cast<std::size_t>(count));
-  CHECK(std::get<PointLight>(scene.lights.back().light).position.x() == count - 1);
+  CHECK(scene.lights.back().vector.x() == count - 1);
   CHECK(scene.lights.back().place.line == 12u + 4u * (count - 1));
 }

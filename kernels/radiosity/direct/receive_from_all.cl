@@ -36,5 +36,5 @@ __kernel void receive_from_all(uint first_row, uint rows, const __global uchar* 
   __global float* to = irradiance + FMM_LANES * row;
   store_fmm(red, to);
   store_fmm(green, to + stride);
-  store_fmm(blue, to + 2u * stride);
+  store_fmm(blue, to + FMM_PLANE(2, stride));
 }

@@ -11,8 +11,9 @@ typedef struct Receivers {
 static inline Receivers receivers_at(const __global float* points, uint stride, uint first) {
   const __global float* p = points + first;
   Receivers r;
-  r.x = load_fmm(p), r.y = load_fmm(p + stride), r.z = load_fmm(p + 2u * stride);
-  r.nx = load_fmm(p + 3u * stride), r.ny = load_fmm(p + 4u * stride), r.nz = load_fmm(p + 5u * stride);
+  r.x = load_fmm(p), r.y = load_fmm(p + stride), r.z = load_fmm(p + FMM_PLANE(2, stride));
+  r.nx = load_fmm(p + FMM_PLANE(3, stride)), r.ny = load_fmm(p + FMM_PLANE(4, stride));
+  r.nz = load_fmm(p + FMM_PLANE(5, stride));
   r.red = 0.0f, r.green = 0.0f, r.blue = 0.0f;
   return r;
 }
@@ -42,9 +43,9 @@ static inline fmm_lanes close_exchange(Receivers* r, fmm_lanes dx, fmm_lanes dy,
 
 /* pi / A-th of point_exchange() with the point at p of the planes: both clamps, nothing between. */
 static inline fmm_lanes exchange_with_point(Receivers* r, const __global float* p, uint stride) {
-  const fmm_lanes dx = p[0] - r->x, dy = p[stride] - r->y, dz = p[2u * stride] - r->z;
-  const float3 n = (float3)(p[3u * stride], p[4u * stride], p[5u * stride]);
-  const float area = p[6u * stride];
+  const fmm_lanes dx = p[0] - r->x, dy = p[stride] - r->y, dz = p[FMM_PLANE(2, stride)] - r->z;
+  const float3 n = (float3)(p[FMM_PLANE(3, stride)], p[FMM_PLANE(4, stride)], p[FMM_PLANE(5, stride)]);
+  const float area = p[FMM_PLANE(6, stride)];
   const fmm_lanes b = max(-(n.x * dx + n.y * dy + n.z * dz), 0.0f);
   const fmm_lanes a = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
   const fmm_lanes r2 = max(dx * dx + dy * dy + dz * dz, 1e-30f);
@@ -59,6 +60,6 @@ static inline fmm_lanes exchange_with_point(Receivers* r, const __global float* 
 /* What a point j of flux B A [W] a colour, planes `stride` apart, gives by a factor a lane. */
 static inline void receive_flux(Receivers* r, fmm_lanes factor, const __global float* flux, uint stride, uint j) {
   r->red += factor * flux[j];
-  r->green += factor * flux[stride + j];
-  r->blue += factor * flux[2u * stride + j];
+  r->green += factor * flux[FMM_PLANE(1, stride) + j];
+  r->blue += factor * flux[FMM_PLANE(2, stride) + j];
 }

@@ -34,20 +34,20 @@ __kernel void p2m(const __global uint4* jobs, uint first_job, uint count, const 
     sum[value] = 0.0f;
   for (uint j = cluster->first_point; j < cluster->first_point + cluster->count; ++j) {
     const float3 at = (float3)((points[j] - grid->centre[0]) / grid->half_side[0],
-                               (points[point_count + j] - grid->centre[1]) / grid->half_side[1],
-                               (points[2u * point_count + j] - grid->centre[2]) / grid->half_side[2]);
+                               (points[FMM_PLANE(1, point_count) + j] - grid->centre[1]) / grid->half_side[1],
+                               (points[FMM_PLANE(2, point_count) + j] - grid->centre[2]) / grid->half_side[2]);
     const fmm_lanes weight = spread_weight(n, ux, uy, uz, at);
-    const float3 normal =
-        (float3)(points[3u * point_count + j], points[4u * point_count + j], points[5u * point_count + j]);
+    const float3 normal = (float3)(points[FMM_PLANE(3, point_count) + j], points[FMM_PLANE(4, point_count) + j],
+                                   points[FMM_PLANE(5, point_count) + j]);
     for (int c = 0; c < 3; ++c) {
-      const float power = flux[(uint)c * point_count + j];
+      const float power = flux[FMM_PLANE(c, point_count) + j];
       sum[3 * c] += weight * (power * normal.x);
       sum[3 * c + 1] += weight * (power * normal.y);
       sum[3 * c + 2] += weight * (power * normal.z);
     }
   }
   for (int value = 0; value < FMM_VALUES; ++value)
-    store_fmm(sum[value], moments + (uint)value * nodes + job.y);
+    store_fmm(sum[value], moments + FMM_PLANE(value, nodes) + job.y);
 }
 
 /* M2M: moments of a block of nodes = sum over the nodes of all children. The deeper level must be done. */
@@ -71,15 +71,15 @@ __kernel void m2m(const __global uint4* jobs, uint first_job, uint count, const 
     const uint from = grids[child].first, to = from + cn.x * cn.y * cn.z;
     for (uint m = from; m < to; ++m) {
       const float3 at = (float3)((node_positions[m] - grid->centre[0]) / grid->half_side[0],
-                                 (node_positions[nodes + m] - grid->centre[1]) / grid->half_side[1],
-                                 (node_positions[2u * nodes + m] - grid->centre[2]) / grid->half_side[2]);
+                                 (node_positions[FMM_PLANE(1, nodes) + m] - grid->centre[1]) / grid->half_side[1],
+                                 (node_positions[FMM_PLANE(2, nodes) + m] - grid->centre[2]) / grid->half_side[2]);
       const fmm_lanes weight = spread_weight(n, ux, uy, uz, at);
       for (int value = 0; value < FMM_VALUES; ++value)
-        sum[value] += weight * moments[(uint)value * nodes + m];
+        sum[value] += weight * moments[FMM_PLANE(value, nodes) + m];
     }
   }
   for (int value = 0; value < FMM_VALUES; ++value)
-    store_fmm(sum[value], moments + (uint)value * nodes + job.y);
+    store_fmm(sum[value], moments + FMM_PLANE(value, nodes) + job.y);
 }
 
 /* Sums of local expansions of `grid` at lanes (x, y, z), added to sum[]. */
@@ -95,7 +95,7 @@ static inline void interpolate(const __global FmmGrid* grid, const __global floa
       for (uint i = 0u; i < n.x; ++i, ++m) {
         const fmm_lanes weight = wyz * chebyshev_weight(n.x, tx, chebyshev_node(n.x, i));
         for (int value = 0; value < FMM_VALUES; ++value)
-          sum[value] += weight * local_values[(uint)value * nodes + m];
+          sum[value] += weight * local_values[FMM_PLANE(value, nodes) + m];
       }
     }
   }
@@ -111,11 +111,11 @@ __kernel void l2l(const __global uint4* jobs, uint first_job, uint count, const 
   const uint4 job = jobs[first_job + id];
   fmm_lanes sum[FMM_VALUES];
   for (int value = 0; value < FMM_VALUES; ++value)
-    sum[value] = load_fmm(local_values + (uint)value * nodes + job.y);
+    sum[value] = load_fmm(local_values + FMM_PLANE(value, nodes) + job.y);
   interpolate(grids + clusters[job.x].parent, local_values, nodes, load_fmm(node_positions + job.y),
-              load_fmm(node_positions + nodes + job.y), load_fmm(node_positions + 2u * nodes + job.y), sum);
+              load_fmm(node_positions + nodes + job.y), load_fmm(node_positions + FMM_PLANE(2, nodes) + job.y), sum);
   for (int value = 0; value < FMM_VALUES; ++value)
-    store_fmm(sum[value], local_values + (uint)value * nodes + job.y);
+    store_fmm(sum[value], local_values + FMM_PLANE(value, nodes) + job.y);
 }
 
 /* L2P: irradiance[colour * point_count + i] = -(1/pi) n_i . F(x_i) [W/m^2] of a block of a leaf's points. */
@@ -130,11 +130,12 @@ __kernel void l2p(const __global uint4* jobs, uint first_job, uint count, const 
   for (int value = 0; value < FMM_VALUES; ++value)
     field[value] = 0.0f;
   interpolate(grids + job.x, local_values, nodes, load_fmm(points + job.y), load_fmm(points + point_count + job.y),
-              load_fmm(points + 2u * point_count + job.y), field);
-  const fmm_lanes nx = load_fmm(points + 3u * point_count + job.y), ny = load_fmm(points + 4u * point_count + job.y),
-                  nz = load_fmm(points + 5u * point_count + job.y);
+              load_fmm(points + FMM_PLANE(2, point_count) + job.y), field);
+  const fmm_lanes nx = load_fmm(points + FMM_PLANE(3, point_count) + job.y),
+                  ny = load_fmm(points + FMM_PLANE(4, point_count) + job.y),
+                  nz = load_fmm(points + FMM_PLANE(5, point_count) + job.y);
   for (uint c = 0u; c < 3u; ++c) {
     const fmm_lanes h = -INVERSE_PI * (nx * field[3u * c] + ny * field[3u * c + 1u] + nz * field[3u * c + 2u]);
-    store_block(h, irradiance + c * point_count + job.y, job.z);
+    store_block(h, irradiance + FMM_PLANE(c, point_count) + job.y, job.z);
   }
 }

@@ -14,12 +14,12 @@ __kernel void m2l(const __global uint4* jobs, uint first_job, uint count, const 
     return;
   const uint4 job = jobs[first_job + id];
   const fmm_lanes x = load_fmm(node_positions + job.y), y = load_fmm(node_positions + nodes + job.y),
-                  z = load_fmm(node_positions + 2u * nodes + job.y);
+                  z = load_fmm(node_positions + FMM_PLANE(2, nodes) + job.y);
   /* Nine names, not an array: they stay in registers. */
   fmm_lanes rx = 0.0f, ry = 0.0f, rz = 0.0f, gx = 0.0f, gy = 0.0f, gz = 0.0f, bx = 0.0f, by = 0.0f, bz = 0.0f;
   const __global float* mx = node_positions;
   const __global float* my = node_positions + nodes;
-  const __global float* mz = node_positions + 2u * nodes;
+  const __global float* mz = node_positions + FMM_PLANE(2, nodes);
   for (uint entry = far_begin[job.x]; entry < far_begin[job.x + 1u]; ++entry) {
     const __global FmmGrid* source = grids + far_source[entry];
     const uint to = source->first + FMM_AXIS(source->axis, 0) * FMM_AXIS(source->axis, 1) * FMM_AXIS(source->axis, 2);
@@ -29,9 +29,11 @@ __kernel void m2l(const __global uint4* jobs, uint first_job, uint count, const 
       const fmm_lanes inverse = 1.0f / (dx * dx + dy * dy + dz * dz);
       const fmm_lanes scale = share * inverse * inverse;
       const __global float* q = moments + m;
-      const fmm_lanes r = scale * (dx * q[0] + dy * q[nodes] + dz * q[2u * nodes]);
-      const fmm_lanes g = scale * (dx * q[3u * nodes] + dy * q[4u * nodes] + dz * q[5u * nodes]);
-      const fmm_lanes b = scale * (dx * q[6u * nodes] + dy * q[7u * nodes] + dz * q[8u * nodes]);
+      const fmm_lanes r = scale * (dx * q[0] + dy * q[nodes] + dz * q[FMM_PLANE(2, nodes)]);
+      const fmm_lanes g =
+          scale * (dx * q[FMM_PLANE(3, nodes)] + dy * q[FMM_PLANE(4, nodes)] + dz * q[FMM_PLANE(5, nodes)]);
+      const fmm_lanes b =
+          scale * (dx * q[FMM_PLANE(6, nodes)] + dy * q[FMM_PLANE(7, nodes)] + dz * q[FMM_PLANE(8, nodes)]);
       rx += dx * r, ry += dy * r, rz += dz * r;
       gx += dx * g, gy += dy * g, gz += dz * g;
       bx += dx * b, by += dy * b, bz += dz * b;
@@ -40,11 +42,11 @@ __kernel void m2l(const __global uint4* jobs, uint first_job, uint count, const 
   __global float* to = local_values + job.y;
   store_fmm(rx, to);
   store_fmm(ry, to + nodes);
-  store_fmm(rz, to + 2u * nodes);
-  store_fmm(gx, to + 3u * nodes);
-  store_fmm(gy, to + 4u * nodes);
-  store_fmm(gz, to + 5u * nodes);
-  store_fmm(bx, to + 6u * nodes);
-  store_fmm(by, to + 7u * nodes);
-  store_fmm(bz, to + 8u * nodes);
+  store_fmm(rz, to + FMM_PLANE(2, nodes));
+  store_fmm(gx, to + FMM_PLANE(3, nodes));
+  store_fmm(gy, to + FMM_PLANE(4, nodes));
+  store_fmm(gz, to + FMM_PLANE(5, nodes));
+  store_fmm(bx, to + FMM_PLANE(6, nodes));
+  store_fmm(by, to + FMM_PLANE(7, nodes));
+  store_fmm(bz, to + FMM_PLANE(8, nodes));
 }

@@ -65,5 +65,5 @@ __kernel void receive_points(const __global uint4* jobs, uint first_job, uint co
   __global float* to = irradiance + job.y;
   add_block(r.red, to, job.z);
   add_block(r.green, to + stride, job.z);
-  add_block(r.blue, to + 2u * stride, job.z);
+  add_block(r.blue, to + FMM_PLANE(2, stride), job.z);
 }

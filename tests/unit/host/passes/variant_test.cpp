@@ -85,17 +85,21 @@ TEST_CASE("options hang on what a kernel reads, fast math on the kernels that ma
 
 TEST_CASE("kernels of a scene without specular surfaces know nothing of them") {
   const TraversalVariant v = plain_variant(TraversalForm::wide);
-  const SceneFeatures diffuse{true, true, true, true};
+  const SceneFeatures diffuse{all_lights, true, true, true, true, 1u << MATERIAL_DIFFUSE, MATERIAL_REFLECTS_DIFFUSELY};
   for (const Program& program : {shade_program(v, diffuse), path_program(v, diffuse, true), eye_rays_program(v),
                                  direct_irradiance_program(v, diffuse), segments_program(v), trace_program(v)})
-    for (const char* feature : {"SPECULAR", "GLASS", "PHONG"})
+    for (const char* feature : {"SPECULAR", "TRANSMISSION", "LOBES", "WITH_MIRROR", "WITH_GLASS"})
       CHECK_THAT(program.options, !Contains(feature));
   SceneFeatures mirrors = diffuse;
-  mirrors.specular = true;
-  CHECK_THAT(shade_program(v, mirrors).options,
-             Contains("HAS_SPECULAR") && !Contains("HAS_GLASS") && !Contains("HAS_PHONG"));
-  mirrors.glass = mirrors.phong = true;
-  CHECK_THAT(path_program(v, mirrors, false).options, Contains("HAS_GLASS") && Contains("HAS_PHONG"));
+  mirrors.materials |= 1u << MATERIAL_MIRROR;
+  mirrors.material_flags |= MATERIAL_SPECULAR;
+  CHECK_THAT(shade_program(v, mirrors).options, Contains("HAS_SPECULAR") && Contains("WITH_MIRROR=1") &&
+                                                    Contains("WITH_GLASS=0") && !Contains("TRANSMISSION") &&
+                                                    !Contains("LOBES"));
+  mirrors.materials |= 1u << MATERIAL_GLASS | 1u << MATERIAL_PHONG;
+  mirrors.material_flags |= MATERIAL_TRANSMITS | MATERIAL_HAS_LOBE;
+  CHECK_THAT(path_program(v, mirrors, false).options, Contains("WITH_GLASS=1") && Contains("WITH_PHONG=1") &&
+                                                          Contains("HAS_TRANSMISSION") && Contains("HAS_LOBES"));
 }
 
 TEST_CASE("each program is listed once, with the devices that may run it") {

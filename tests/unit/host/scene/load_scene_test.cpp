@@ -215,7 +215,7 @@ TEST_CASE("every key of the materials arrives", "[scene]") {
   CHECK(points.emission == Vector3d(0, 0.5, 1));
   CHECK(folder.without_folder(points.place.text()) == "scene.toml:14:1");
   CHECK(scene.materials[1].type == MaterialType::mirror);
-  CHECK(scene.materials[1].reflectance == Vector3d(0.9, 0.8, 0.7));
+  CHECK(scene.materials[1].specular == Vector3d(0.9, 0.8, 0.7));
   CHECK(scene.materials[2].type == MaterialType::glass);
   CHECK(scene.materials[2].ior == 1.33);
   CHECK(scene.materials[2].absorption == Vector3d(0.1, 0.2, 0.3));
@@ -278,12 +278,13 @@ TEST_CASE("every key of the shapes and lights arrives", "[scene]") {
   CHECK(cylinder.inward);
 
   REQUIRE(scene.lights.size() == 2);
-  CHECK(std::get<PointLight>(scene.lights[0].light).position == Vector3d(0, 1.9, 0));
-  CHECK(std::get<PointLight>(scene.lights[0].light).power_w == Vector3d(40, 30, 20));
-  const auto& sun = std::get<DirectionalLight>(scene.lights[1].light);
+  CHECK(scene.lights[0].vector == Vector3d(0, 1.9, 0));
+  CHECK(scene.lights[0].strength == Vector3d(40, 30, 20) / (4.0 * 3.14159265358979323846));
+  const LightSettings& sun = scene.lights[1];
+  CHECK((sun.type == LightType::directional && sun.is_far));
   // A division and a square root: some units in the last place of a double.
-  CHECK((sun.direction - Vector3d(0, -0.6, 0.8)).norm() < 1e-15);
-  CHECK(sun.irradiance == Vector3d(1, 2, 3));
+  CHECK((sun.vector - Vector3d(0, 0.6, -0.8)).norm() < 1e-15);
+  CHECK(sun.strength == Vector3d(1, 2, 3));
 }
 
 TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
@@ -348,7 +349,7 @@ TEST_CASE("powers and lengths of the extremes load", "[scene]") {
     const Scene scene = folder.load(with_line(small_scene, "power_w = [1, 2, 3]",
                                               "[[light]]\ntype = \"point\"\nposition = [1e6, -1e6, 0]\npower_w = [" +
                                                   std::string(power) + ", 0, 0]"));
-    CHECK(std::get<PointLight>(scene.lights[1].light).power_w.x() == std::stod(power));
+    CHECK(scene.lights[1].strength.x() == std::stod(power) / (4.0 * 3.14159265358979323846));
   }
 }
 

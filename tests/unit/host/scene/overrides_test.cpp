@@ -26,8 +26,8 @@ TEST_CASE("overrides find elements by name and by index", "[scene]") {
                                          "light.0.power_w=[4, 5, 6]", "light.0.position.1=7", "shape.0.spacing=0.5"});
   CHECK(scene.materials[0].albedo.value() == Vector3d(0.1, 0.2, 0.3));
   CHECK(scene.materials[1].ior == 1.3);
-  CHECK(std::get<PointLight>(scene.lights[0].light).power_w == Vector3d(4, 5, 6));
-  CHECK(std::get<PointLight>(scene.lights[0].light).position == Vector3d(0, 7, 0));
+  CHECK(scene.lights[0].strength == Vector3d(4, 5, 6) / (4.0 * 3.14159265358979323846));
+  CHECK(scene.lights[0].vector == Vector3d(0, 7, 0));
   CHECK(scene.shapes[0].spacing == 0.5);
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("overrides replace whole tables and elements", "[scene]") {
       folder.load(small_scene,
                   {"light=[{type = \"directional\", direction = [0, -1, 0], irradiance = [1, 1, 1]}]",
                    "shape.0={type = \"sphere\", centre = [0, 0, 0], radius = 1, spacing = 0.1, material = \"white\"}"});
-  CHECK(std::holds_alternative<DirectionalLight>(scene.lights.at(0).light));
+  CHECK(scene.lights.at(0).type == LightType::directional);
   CHECK(std::get<SphereShape>(scene.shapes.at(0).geometry).radius == 1);
 }
 

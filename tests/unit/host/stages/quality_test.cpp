@@ -1,3 +1,4 @@
+#include "host/scene/limits.h"
 #include "host/stages/prepared_scene.h"
 #include <catch2/catch.hpp>
 
@@ -20,5 +21,34 @@ TEST_CASE("quality changes noise and error together, but no number of samples th
   CHECK(with("high", 32, 4e-3, true).render.spp == 32);
   CHECK(with("high", 32, 4e-3, true).radiosity.epsilon == 2e-3);
   CHECK(with("draft", 1, 0.5).render.spp == 1);
-  CHECK(with("draft", 1, 0.5).radiosity.epsilon == 1.0);
+}
+
+TEST_CASE("a draft's epsilon stays one that a scene may have, and is never finer than the scene's own") {
+  const auto drafted = [](double epsilon) {
+    Scene scene;
+    scene.radiosity.epsilon = epsilon;
+    apply_quality("draft", scene);
+    return scene.radiosity.epsilon;
+  };
+  CHECK(drafted(0.02) == 0.08);
+  CHECK(drafted(0.03) == limits::coarsest_draft_epsilon);
+  for (const double own : {0.1, 0.5, 0.999})
+    CHECK(drafted(own) == own);
+}
+
+TEST_CASE("a lit cloud has as many light samples as its quality, unless the scene says how many") {
+  for (const auto& [quality, samples] :
+       {std::make_pair("draft", 16), std::make_pair("normal", 64), std::make_pair("high", 256)}) {
+    Scene scene;
+    apply_bake_quality(quality, scene);
+    CHECK(scene.radiosity.light_samples == samples);
+    Scene told;
+    told.radiosity.light_samples = 7;
+    apply_bake_quality(quality, told);
+    CHECK(told.radiosity.light_samples == 7);
+    CHECK(told.radiosity.epsilon == scene.radiosity.epsilon);
+    Scene picture;
+    apply_quality(quality, picture);
+    CHECK_FALSE(picture.radiosity.light_samples);
+  }
 }

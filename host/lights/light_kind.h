@@ -1,0 +1,25 @@
+#pragma once
+/// The kinds of [[light]], as the scene file has them: one file of this folder a kind, one row in
+/// kernels/shared/light_kinds.h. How the device samples them stands in kernels/lights.
+#include "host/scene/toml_reader.h"
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+struct LightKind {
+  std::vector<std::string> keys; ///< beside `type`
+  /// Reads these keys into everything of `light` but its type and place. Throws Error(input).
+  void (*load)(const TableReader& table, LightSettings& light);
+};
+
+/// The row of a kind.
+const LightKind& kind_of(LightType type);
+
+/// Every kind, in the order of its number.
+const std::vector<LightType>& light_types();
+
+/// "the point light at [0, 1.9, 0]", for messages.
+std::string description_of(const LightSettings& light);
+
+} // namespace pointgi

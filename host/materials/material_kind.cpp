@@ -1,0 +1,54 @@
+#include "host/materials/material_kind.h"
+
+namespace pointgi {
+
+// A kind's file defines `NAME_kind`.
+#define DECLARE_KIND(ID, name) extern const MaterialKind name##_kind;
+MATERIAL_KINDS(DECLARE_KIND)
+#undef DECLARE_KIND
+
+const MaterialKind& kind_of(MaterialType type) {
+#define KIND(ID, name) &name##_kind,
+  static const MaterialKind* const kinds[] = {MATERIAL_KINDS(KIND)};
+#undef KIND
+  return *kinds[static_cast<std::size_t>(type)];
+}
+
+const std::vector<MaterialType>& material_types() {
+#define TYPE(ID, name) MaterialType::name,
+  static const std::vector<MaterialType> all{MATERIAL_KINDS(TYPE)};
+#undef TYPE
+  return all;
+}
+
+const char* name_of(MaterialType type) {
+#define NAME(ID, name) #name,
+  static constexpr const char* names[] = {MATERIAL_KINDS(NAME)};
+#undef NAME
+  return names[static_cast<std::size_t>(type)];
+}
+
+bool exchanges_light(const MaterialSettings& material) {
+  return (material.flags & MATERIAL_REFLECTS_DIFFUSELY) != 0;
+}
+
+std::vector<std::string> joined(const std::vector<std::string>& first, const std::vector<std::string>& second) {
+  std::vector<std::string> all = first;
+  all.insert(all.end(), second.begin(), second.end());
+  return all;
+}
+
+const std::vector<std::string>& diffuse_keys() {
+  static const std::vector<std::string> keys{"albedo", "colour_space", "emission"};
+  return keys;
+}
+
+void load_diffuse_keys(const TableReader& table, MaterialSettings& material) {
+  material.flags |= MATERIAL_REFLECTS_DIFFUSELY;
+  material.albedo = table.vector3("albedo", limits::reflectance);
+  if (const auto emission = table.vector3("emission", limits::light)) material.emission = *emission;
+  if (const auto space = table.choice("colour_space", {"srgb", "linear"}))
+    material.colour_space = *space == "srgb" ? ColourSpace::srgb : ColourSpace::linear;
+}
+
+} // namespace pointgi

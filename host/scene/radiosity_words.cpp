@@ -1,0 +1,30 @@
+#include "host/scene/radiosity_words.h"
+#include <algorithm>
+
+namespace pointgi {
+
+const std::vector<RadiosityWords>& radiosity_words() {
+  static const std::vector<RadiosityWords> all{
+      {"fmm", {"order", "vmap_samples", "point_samples", "epsilon", "tolerance", "vmap"}},
+      {"direct", {"tolerance"}},
+  };
+  return all;
+}
+
+std::vector<std::string> radiosity_method_words() {
+  std::vector<std::string> words;
+  for (const RadiosityWords& row : radiosity_words())
+    words.emplace_back(row.method);
+  words.insert(words.begin() + 1, "none");
+  return words;
+}
+
+std::vector<std::string> radiosity_method_keys() {
+  std::vector<std::string> keys;
+  for (const RadiosityWords& row : radiosity_words())
+    for (const char* key : row.keys)
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.emplace_back(key);
+  return keys;
+}
+
+} // namespace pointgi

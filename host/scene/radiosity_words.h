@@ -1,0 +1,23 @@
+#pragma once
+/// The words of [radiosity] that depend on the methods: what `method` may be, and which keys each reads. What a method
+/// does is its row of host/radiosity/methods.cpp, in the same order.
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+struct RadiosityWords {
+  const char* method;
+  std::vector<const char*> keys; ///< of [radiosity] that this method alone, or with others, reads
+};
+
+/// A method a row, the default first. "none", which exchanges no light, is not among them.
+const std::vector<RadiosityWords>& radiosity_words();
+
+/// What `radiosity.method` may be: "none" after the default.
+std::vector<std::string> radiosity_method_words();
+
+/// Every key that some method reads, once.
+std::vector<std::string> radiosity_method_keys();
+
+} // namespace pointgi

@@ -1,0 +1,39 @@
+/* Splats that shine: area lights. */
+#include "lights/light_sample.cl"
+
+/* One emitting splat in proportion to its power, one point on the disc of its effective area: H = L A cos cos' / (d^2 p).
+ * False where the light does not reach the surface's front whatever stands between. */
+static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global Material* materials,
+                                  const __global Emitter* emitters, uint emitter_count, float4 u, LightSample* sample) {
+  const uint i = pick(&emitters->cumulative, sizeof(Emitter) / sizeof(float), emitter_count, u.x);
+  const float share = emitters[i].cumulative - (i > 0u ? emitters[i - 1u].cumulative : 0.0f);
+  const uint point = emitters[i].point;
+  const float4 centre = pool_point_texel(POINT_TEXELS * point);
+  const float4 normal = pool_point_texel(POINT_TEXELS * point + 1u);
+  const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
+  float3 a, b;
+  tangents(normal.xyz, &a, &b);
+  const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
+  float3 towards = centre.xyz + r * cos(phi) * a + r * sin(phi) * b - s->position;
+  /* Not nearer than a tenth of the disc: the estimate of a light that touches the surface stays finite. */
+  const float d2 = fmax(dot3(towards, towards), 0.01f * area);
+  sample->distance = sqrt(d2);
+  towards /= sample->distance;
+  const float cosine = dot3(s->normal, towards), cosine_at_light = -dot3(normal.xyz, towards);
+  const __global Material* material = materials + (uint)normal.w;
+  sample->towards = towards;
+  sample->irradiance = load3(material->emission) * (area * cosine * cosine_at_light / (d2 * share));
+  sample->normal = normal.xyz;
+  sample->radius = centre.w;
+#ifdef HAS_LOBES
+  sample->pdf = material->emitter_density * d2 / cosine_at_light;
+#endif
+  return share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f;
+}
+
+/* Density, per solid angle, with which sample_emitter finds the place of an emitter that a ray has met. Overlapping discs of
+ * one material are sampled as if they were one surface of even density. */
+static inline float emitter_pdf(const Surface* s, const __global Material* materials, float3 direction) {
+  const float cosine = fabs(dot3(s->normal, direction));
+  return materials[s->material].emitter_density * s->t * s->t / fmax(cosine, 1e-6f);
+}

@@ -1,0 +1,12 @@
+#ifndef POINTGI_SHARED_LIGHT_KINDS_H
+#define POINTGI_SHARED_LIGHT_KINDS_H
+/* The kinds of [[light]], a row each: ROW(ID, name). LIGHT_<ID> is the number of the kind. kernels/lights/<name>.cl
+ * samples it; host/lights/<name>.cpp reads the keys of the scene file. Both sides take their tables from here. Emitting
+ * splats (kernels/lights/emitter.cl) and the environment (kernels/lights/sky.cl) are no [[light]]. */
+#define LIGHT_KINDS(ROW)                                                                                               \
+  ROW(POINT, point)                                                                                                    \
+  ROW(DIRECTIONAL, directional)
+
+#define LIGHT_KIND_NUMBER(ID, name) LIGHT_##ID,
+enum LightKindNumber { LIGHT_KINDS(LIGHT_KIND_NUMBER) LIGHT_KIND_COUNT };
+#endif

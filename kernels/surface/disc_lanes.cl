@@ -1,0 +1,42 @@
+/* meet of kernels/surface/disc.cl in vectors: one ray against a block of discs, or sixteen rays of one origin against a
+ * disc. */
+#include "lib/lanes.cl"
+#include "lib/vector.cl"
+#include "shared/octree_types.h"
+
+/* What meet says of each disc of a block. */
+typedef struct BlockHits {
+  lanes_f t, q, radius, nx, ny, nz;
+  lanes_i inside; /* the ray meets the disc */
+  uint first;     /* index of lane 0 in the point pool */
+} BlockHits;
+
+/* meet in lanes, bit-identical. */
+static inline BlockHits meet_lanes(const __global float* block, float3 origin, float3 direction) {
+  BlockHits h;
+  const lanes_f cx = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - origin.x;
+  const lanes_f cy = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - origin.y;
+  const lanes_f cz = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 2)) - origin.z;
+  h.radius = load_lanes(block + WIDE_RADIUS(WIDE_LANES));
+  h.nx = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 0));
+  h.ny = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 1));
+  h.nz = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 2));
+  h.t = fma(h.nx, cx, fma(h.ny, cy, h.nz * cz)) /
+        fma(h.nx, (lanes_f)(direction.x), fma(h.ny, (lanes_f)(direction.y), h.nz * direction.z));
+  const lanes_f ox = fma(h.t, (lanes_f)(direction.x), -cx), oy = fma(h.t, (lanes_f)(direction.y), -cy),
+                oz = fma(h.t, (lanes_f)(direction.z), -cz);
+  const lanes_f distance2 = fma(ox, ox, fma(oy, oy, oz * oz)), r2 = h.radius * h.radius;
+  h.q = distance2 / r2;
+  h.inside = (distance2 <= r2) & (h.radius > 0.0f);
+  h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
+  return h;
+}
+
+/* meet of sixteen rays with the unit directions (dx, dy, dz), bit-identical. centre: from the rays' origin. */
+static inline float16 meet_rays(float16 dx, float16 dy, float16 dz, float3 centre, float radius, float3 normal,
+                                int16* inside) {
+  const float16 t = dot3(normal, centre) / fma((float16)(normal.x), dx, fma((float16)(normal.y), dy, normal.z * dz));
+  const float16 x = fma(t, dx, (float16)(-centre.x)), y = fma(t, dy, (float16)(-centre.y)), z = fma(t, dz, (float16)(-centre.z));
+  *inside = fma(x, x, fma(y, y, z * z)) <= radius * radius;
+  return t;
+}

@@ -1,0 +1,73 @@
+/* Which hits of a ray belong to the surfaces at its two ends: discs overlap, and those around an end stick out of the
+ * surface that they stand for. kernels/surface/own_surface_lanes.cl says the same of a block of discs. */
+#include "lib/vector.cl"
+#include "shared/traversal_types.h"
+
+typedef struct ShadowEnds {
+  float3 origin_normal, target_normal; /* facing the ray or not: the side does not matter, the splat's own normal does */
+  float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
+#ifdef HAS_SPECULAR
+  uint origin_material; /* 1 + material of the surface at the origin: discs of others are no part of it; 0: all may be */
+  uint origin_back;     /* 1: the ray goes off on the back side of the surface there, into glass */
+  uint origin_through;  /* 1: it came through that surface */
+  uint medium;          /* 1 + material of the glass that the ray is in; 0: none */
+#endif
+} ShadowEnds;
+
+static inline ShadowEnds free_ends(void) {
+  ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+#ifdef HAS_SPECULAR
+  ends.origin_material = ends.origin_back = ends.origin_through = ends.medium = 0u;
+#endif
+  return ends;
+}
+
+/* By how much a steep ray's way from an end counts as longer than it is: it is as far from the surface there as a flat
+ * ray is at SELF_HIT_REACH. */
+static inline float steepness_at_end(float3 end_normal, float3 direction) {
+  return fmax(1.0f, SELF_HIT_REACH / SELF_HIT_HEIGHT * fabs(dot3(end_normal, direction)));
+}
+
+/* Whether a disc that is met `distance` from an end of a ray belongs to the surface there. */
+static inline bool belongs_to_end(float3 end_normal, float end_radius, float steepness, float distance, float radius,
+                                  float3 normal) {
+  const float cosine = dot3(normal, end_normal);
+  return (steepness * distance < SELF_HIT_REACH * (end_radius + radius) && cosine > SELF_HIT_COSINE) ||
+         (distance < COINCIDENT(end_radius + radius) && cosine < -SELF_HIT_COSINE);
+}
+
+/* Of a ray that carries light from surface to surface, a disc near its origin is met when the ray arrives at its front:
+ * the surface is hollow there. Were it passed by, light would get out through the walls of what is closed: the inside
+ * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
+#define ARRIVAL_DISTANCE 0.1f
+
+/* normal.w: the disc's material. A ray that goes off into glass passes by the discs whose fronts it meets near there, and
+ * arrives at backs: all that was said of sides is turned round. What is coincident and faces the other way, the far side of
+ * a sheet or the floor that glass stands on, does not stop a ray that is thrown back; one that came through must meet it.
+ * Of another material that continues the surface in its plane, discs stick over the edge: a ray that is thrown back does
+ * not meet their far sides. */
+static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float4 normal) {
+  float along = dot3(normal.xyz, direction);
+#ifdef HAS_SPECULAR
+  if (ends.origin_material != 0u) {
+    along = ends.origin_back != 0u ? -along : along;
+    if (dot3(normal.xyz, ends.origin_normal) < 0.0f) {
+      if (ends.origin_through != 0u)
+        return false;
+    } else if ((uint)normal.w + 1u != ends.origin_material) {
+      return ends.origin_through == 0u && along > 0.0f && t < COINCIDENT(ends.origin_radius + radius);
+    }
+  }
+#endif
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
+                        normal.xyz) &&
+         !(along < 0.0f && t > ARRIVAL_DISTANCE * radius);
+}
+
+static inline bool belongs_to_ends(ShadowEnds ends, float3 direction, float t_max, float t, float radius,
+                                   float3 normal) {
+  return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
+                        normal) ||
+         belongs_to_end(ends.target_normal, ends.target_radius, steepness_at_end(ends.target_normal, direction), t_max - t,
+                        radius, normal);
+}
