@@ -50,7 +50,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(x.inward == y.inward);
   CHECK(a.shapes[0].spacing == b.shapes[0].spacing);
   REQUIRE(a.lights.size() == b.lights.size());
-  CHECK(std::get<PointLight>(a.lights[0].light).power_w == std::get<PointLight>(b.lights[0].light).power_w);
+  CHECK(a.lights[0].strength == b.lights[0].strength);
 }
 
 } // namespace
