@@ -115,6 +115,11 @@ Program specular_rays_program(const TraversalVariant& variant) {
                  feature_options({0, false, false, false, true, all_materials, all_material_flags}));
 }
 
+Program samplers_program(const TraversalVariant& variant) {
+  return program(variant, "test/samplers.cl",
+                 feature_options({all_lights, true, true, false, true, all_materials, all_material_flags}));
+}
+
 Program segments_program(const TraversalVariant& variant) {
   return program(variant, "visibility/segments.cl", "");
 }

@@ -72,6 +72,8 @@ Program direct_irradiance_program(const TraversalVariant& variant, const SceneFe
 
 /// Given rays through specular surfaces, trace_specular_rays, for tests.
 Program specular_rays_program(const TraversalVariant& variant);
+/// Everything that is drawn at random, for tests.
+Program samplers_program(const TraversalVariant& variant);
 
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);

@@ -188,6 +188,7 @@ std::vector<ProgramUse> all_programs() {
     add(direct_irradiance_program(v, {all_lights, true, true}), cpu, gpu);
     if (usual_walk) add(direct_irradiance_program(v, {all_lights, false, true}), cpu, gpu);
     add(specular_rays_program(v), cpu, gpu);
+    if (usual_walk && usual_group) add(samplers_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
     add(path_program(v, traced, true), cpu, gpu);
