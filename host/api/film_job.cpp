@@ -1,5 +1,6 @@
 #include "host/api/parts.h"
 #include "host/cache/binary_cache.h"
+#include "host/lights/environment_map.h"
 #include "host/run.h"
 #include "host/scene/load_sections.h"
 #include "host/stages/view_warnings.h"
@@ -67,6 +68,11 @@ std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting, 
   std::uint64_t hash = fnv1a(bytes(points_of(pools)), fnv1a(settings));
   hash = fnv1a(bytes(lighting.delta), hash);
   hash = fnv1a(bytes(lighting.materials), hash);
+  if (lighting.sky != nullptr) {
+    const SkyMap frame = device_sky_map(*lighting.sky);
+    hash = fnv1a(std::string_view(reinterpret_cast<const char*>(&frame), sizeof frame), hash);
+    hash = fnv1a(bytes(lighting.sky->texels), hash);
+  }
   return fnv1a(std::string_view(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
 }
 

@@ -32,7 +32,7 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
 /// What the user left open is chosen so that the picture is worth looking at.
 void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
   if (!scene.camera.chosen) log_info("{}", choose_camera(scene, splats));
-  if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
+  if (bare && scene.lights.empty() && scene.sky == nullptr && scene.environment.isZero()) choose_lights(scene);
 }
 
 } // namespace
