@@ -1,10 +1,13 @@
 #include "host/cl/kernel_source.h"
 #include "host/cl/embedded_kernels.h"
 #include "host/error.h"
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <set>
+#include <iterator>
+#include <map>
 #include <sstream>
+#include <vector>
 
 namespace pointgi {
 
@@ -32,21 +35,71 @@ std::string included_name(const std::string& line) {
   return line.substr(start.size(), line.find('"', start.size()) - start.size());
 }
 
-void append(const std::string& name, const std::string& included_by, std::set<std::string>& done, std::string& out) {
-  if (!done.insert(name).second) return;
-  std::istringstream lines(read_kernel_file(name, included_by));
-  out += "#line 1 \"kernels/" + name + "\"\n";
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    const std::string included = included_name(line);
-    if (included.empty()) {
-      out += line + "\n";
-      continue;
+/// The conditionals around a line, outermost first, each by a number of its own; a branch is another conditional.
+class Conditionals {
+public:
+  /// A header's own guard does not count.
+  void read(const std::string& line) {
+    const std::size_t at = line.find_first_not_of(' ');
+    if (at == std::string::npos || line[at] != '#') return;
+    const std::string word = line.substr(std::min(line.find_first_not_of(' ', at + 1), line.size()));
+    const auto begins = [&](const char* with) { return word.rfind(with, 0) == 0; };
+    if (begins("if")) {
+      around_.push_back(line.rfind("#ifndef POINTGI_", 0) == 0 ? 0 : ++last_);
+    } else if (begins("el") && !around_.empty()) {
+      around_.back() = ++last_;
+    } else if (begins("endif") && !around_.empty()) {
+      around_.pop_back();
     }
-    append(included, " (included by " + name + ":" + std::to_string(number) + ")", done, out);
-    out += "#line " + std::to_string(number + 1) + " \"kernels/" + name + "\"\n";
   }
-}
+
+  std::vector<int> here() const {
+    std::vector<int> counted;
+    std::copy_if(around_.begin(), around_.end(), std::back_inserter(counted), [](int number) { return number != 0; });
+    return counted;
+  }
+
+private:
+  std::vector<int> around_; ///< 0: a guard
+  int last_ = 0;
+};
+
+/// Writes files one behind another, each once.
+class Flattener {
+public:
+  void append(const std::string& name, const std::string& included_by) {
+    const std::vector<int> here = conditionals_.here();
+    const auto [known, is_new] = written_in_.emplace(name, here);
+    if (!is_new) {
+      // Where a conditional of the first place is false and those of this place are true, the file would be missing.
+      const std::vector<int>& first = known->second;
+      if (first.size() > here.size() || !std::equal(first.begin(), first.end(), here.begin()))
+        throw Error(ErrorKind::internal, "kernels/" + name + included_by +
+                                             " was included inside another conditional before; include it outside, "
+                                             "before both");
+      return;
+    }
+    std::istringstream lines(read_kernel_file(name, included_by));
+    out += "#line 1 \"kernels/" + name + "\"\n";
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      conditionals_.read(line);
+      const std::string included = included_name(line);
+      if (included.empty()) {
+        out += line + "\n";
+        continue;
+      }
+      append(included, " (included by " + name + ":" + std::to_string(number) + ")");
+      out += "#line " + std::to_string(number + 1) + " \"kernels/" + name + "\"\n";
+    }
+  }
+
+  std::string out;
+
+private:
+  Conditionals conditionals_;
+  std::map<std::string, std::vector<int>> written_in_;
+};
 
 } // namespace
 
@@ -55,10 +108,9 @@ std::string kernel_file(const std::string& name) {
 }
 
 std::string kernel_source(const std::string& file) {
-  std::set<std::string> done;
-  std::string out;
-  append(file, "", done, out);
-  return out;
+  Flattener flattener;
+  flattener.append(file, "");
+  return std::move(flattener.out);
 }
 
 } // namespace pointgi

@@ -1,9 +1,9 @@
 /* Probes: what the device itself makes of shared structs and small functions. For tests. */
+#include "traverse/octree_descent.cl"
 #define WITH_PHONG 1
 #define WITH_CONDUCTOR 1
 #include "materials/conductor.cl"
 #include "materials/media.cl"
-#include "traverse/octree_descent.cl"
 #include "materials/phong.cl"
 #include "lib/sampling.cl"
 #include "shared/photon_types.h"

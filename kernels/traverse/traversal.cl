@@ -6,6 +6,7 @@
 #if defined(HAS_SPECULAR) && !defined(BOUNCED_RAYS)
 #define BOUNCED_RAYS
 #endif
+#include "lib/lanes8.cl"
 #include "lib/pools.cl"
 #include "surface/surface.cl"
 #if TRAVERSAL_FORM == FORM_WIDE

@@ -2,7 +2,7 @@
  * work-items have vector registers of their own. A node is tested once for all rays, by bounds of their inverse
  * directions; a block of splats once, against the sides of the frustum around each half of a pixel; a splat meets only
  * those halves whose frustum it reaches into. Answers are those of trace_closest to the bit. */
-#include "traverse/wide_traversal.cl"
+#include "traverse/traversal.cl"
 
 #define PACKET_GROUPS (PACKET_RAYS / 16) /* half pixels, each a vector of rays */
 #define GROUP_COLUMNS PACKET_COLUMNS

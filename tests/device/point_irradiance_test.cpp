@@ -33,6 +33,7 @@ DeviceLighting light_from(std::uint32_t type, float x, float y, float z, float s
     channel = strength;
   light.cumulative = 1.0f;
   lighting.delta.push_back(light);
+  lighting.light_types = 1u << type;
   lighting.params.delta_lights = 1;
   lighting.params.samples = 1;
   return lighting;

@@ -1,9 +1,12 @@
 #include "host/cl/embedded_kernels.h"
 #include "host/cl/kernel_source.h"
 #include "host/error.h"
+#include "host/tune/variant_list.h"
+#include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 
 using namespace pointgi;
 
@@ -51,4 +54,29 @@ TEST_CASE("markers count the lines of our files") {
 
 TEST_CASE("a missing kernel file is named") {
   CHECK_THROWS_WITH(kernel_source("render/none.cl"), Catch::Contains("render/none.cl"));
+}
+
+TEST_CASE("a file that is included inside a conditional first, and outside later, is refused") {
+  const pointgi::test::TemporaryFolder folder;
+  folder.write("inner.cl", "int inner;\n");
+  folder.write("bad.cl", "#ifdef A\n#include \"inner.cl\"\n#endif\n#include \"inner.cl\"\n");
+  folder.write("good.cl", "#include \"inner.cl\"\n#ifdef A\n#include \"inner.cl\"\n#endif\n");
+  folder.write("guarded.cl", "#ifndef POINTGI_X\n#include \"inner.cl\"\n#endif\n#include \"inner.cl\"\n");
+  setenv("POINTGI_KERNEL_DIR", folder.file("").c_str(), 1);
+  CHECK_THROWS_WITH(kernel_source("bad.cl"),
+                    Catch::Contains("bad.cl:4") && Catch::Contains("include it outside, before both"));
+  folder.write("branches.cl", "#ifdef A\n#include \"inner.cl\"\n#else\n#include \"inner.cl\"\n#endif\n");
+  CHECK_THROWS_WITH(kernel_source("branches.cl"), Catch::Contains("branches.cl:4"));
+  CHECK(count(kernel_source("good.cl"), "int inner;") == 1);
+  CHECK_NOTHROW(kernel_source("guarded.cl"));
+  unsetenv("POINTGI_KERNEL_DIR");
+}
+
+TEST_CASE("no program includes a file inside a conditional that it needs outside") {
+  std::set<std::string> files;
+  for (const ProgramUse& use : all_programs())
+    files.insert(use.program.file);
+  CHECK(files.size() > 10);
+  for (const std::string& file : files)
+    CHECK_NOTHROW(kernel_source(file));
 }
