@@ -1,5 +1,6 @@
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
+#include "host/lights/environment_map.h"
 #include "host/passes/build_pools.h"
 #include "host/scene/objects.h"
 #include "host/stages/prepare.h"
@@ -64,6 +65,13 @@ void print_objects(const Scene& scene, const WorldSplats& splats) {
   if (objects > most) std::printf("              and %zu more\n", objects - most);
 }
 
+void print_sky(const Scene& scene) {
+  if (scene.sky == nullptr) return;
+  const Vector3d mean = mean_radiance(*scene.sky);
+  std::printf("  environment map of %d x %d pixels, mean radiance [%.4g, %.4g, %.4g] W/m^2/sr, largest %.4g\n",
+              scene.sky->width, scene.sky->height, mean.x(), mean.y(), mean.z(), largest_radiance(*scene.sky));
+}
+
 /// The value that a share of the points stays below.
 float percentile(std::vector<float> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -85,6 +93,7 @@ ExitCode run_info(const std::string& file) {
   if (is_scene) {
     std::printf("%s\n  scene       %zu clouds, %zu shapes, %zu materials, %zu lights\n", file.c_str(),
                 scene.clouds.size(), scene.shapes.size(), scene.materials.size(), scene.lights.size());
+    print_sky(scene);
     for (const std::string& warning : scene.warnings)
       std::printf("  warning     %s\n", warning.c_str());
     print_objects(scene, splats);

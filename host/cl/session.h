@@ -106,17 +106,17 @@ public:
   cl::Memory upload_image1d(const void* texels, std::size_t count, bool is_float);
   cl::Memory upload_image2d(const void* texels, std::size_t count, bool is_float, unsigned width_log2);
 
-  /// Runs the kernel with these arguments and waits; returns the device's seconds, which also go to kernel_times().
-  /// Checks work-group, local memory and argument count before the device sees them. Throws ResourceError
-  /// when the device refuses the launch for want of memory or other resources, and nothing was run; Error(device) for
-  /// all else, a launch that it began and lost among it.
+  /// Runs the kernel with these arguments, a list of memory objects being as many, and waits; returns the device's
+  /// seconds, which also go to kernel_times(). Checks work-group, local memory and argument count before the device
+  /// sees them. Throws ResourceError when the device refuses the launch for want of memory or other resources, and
+  /// nothing was run; Error(device) for all else, a launch that it began and lost among it.
   template <typename... Args>
   double launch(cl::Kernel& kernel, const LaunchShape& shape, const Args&... args) {
     cl_uint index = 0;
     try {
-      (set_argument(kernel, index++, args), ...);
+      (set_argument(kernel, index, args), ...);
     } catch (const cl::Error& error) {
-      refuse_argument(kernel, index - 1, error);
+      refuse_argument(kernel, index, error);
     }
     return run(kernel, shape, index);
   }
@@ -163,12 +163,17 @@ private:
   double wait(const cl::Kernel& kernel, const cl::Event& event, std::chrono::steady_clock::time_point called);
 
   template <typename T>
-  static void set_argument(cl::Kernel& kernel, cl_uint index, const T& value) {
+  static void set_argument(cl::Kernel& kernel, cl_uint& index, const T& value) {
     kernel.setArg(index, value);
+    ++index;
   }
   template <typename T>
-  static void set_argument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& value) {
-    kernel.setArg(index, value.handle);
+  static void set_argument(cl::Kernel& kernel, cl_uint& index, const Buffer<T>& value) {
+    set_argument(kernel, index, value.handle);
+  }
+  static void set_argument(cl::Kernel& kernel, cl_uint& index, const std::vector<cl::Memory>& values) {
+    for (const cl::Memory& value : values)
+      set_argument(kernel, index, value);
   }
 
   DeviceInfo info_;

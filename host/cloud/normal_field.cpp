@@ -33,7 +33,7 @@ NormalSlopes fit(const Splat& splat, const Neighbour* neighbours, unsigned count
     const Splat* neighbour = other(i);
     if (neighbour == nullptr) continue;
     const Eigen::Vector3d to = vector(neighbour->position) - vector(splat.position), m = vector(neighbour->normal);
-    if (neighbour->material != splat.material || m.dot(n) <= same_surface_cosine) continue;
+    if (material_of(*neighbour) != material_of(splat) || m.dot(n) <= same_surface_cosine) continue;
     const double weight = 1.0 - double{neighbours[i].distance2} / reach2;
     const Eigen::Vector2d at(to.dot(a), to.dot(b)), change(m.dot(a), m.dot(b));
     moments += weight * at * at.transpose();
@@ -84,7 +84,7 @@ std::vector<NormalSlopes> fit_normal_field(View<Splat> splats, const std::functi
           for (const std::uint32_t other : sites.points(neighbours[i].site)) {
             const Splat& candidate = splats[of[other]];
             const auto cosine = static_cast<float>(vector(candidate.normal).dot(vector(splat.normal)));
-            if (candidate.material == splat.material && cosine > most) best = &candidate, most = cosine;
+            if (material_of(candidate) == material_of(splat) && cosine > most) best = &candidate, most = cosine;
           }
           return best;
         });

@@ -5,7 +5,7 @@ namespace pointgi {
 
 namespace {
 
-void load(const TableReader& table, LightSettings& light) {
+void load(const TableReader& table, const LightContext&, LightSettings& light) {
   const Vector3d direction = table.need_vector3("direction", limits::coordinate);
   if (direction.norm() < limits::length.low)
     table.fail("direction", "expected the way the light travels, found a vector of no length");

@@ -273,6 +273,13 @@ SkySample sample_map(const EnvironmentMap& map, const std::array<double, 4>& u) 
           y * static_cast<std::size_t>(map.width) + x};
 }
 
+double largest_radiance(const EnvironmentMap& map) {
+  float largest = 0.0f;
+  for (const SkyTexel& texel : map.texels)
+    largest = std::max({largest, texel.radiance[0], texel.radiance[1], texel.radiance[2]});
+  return static_cast<double>(largest);
+}
+
 Vector3d mean_radiance(const EnvironmentMap& map) {
   Vector3d sum = Vector3d::Zero();
   for (int y = 0; y < map.height; ++y) {

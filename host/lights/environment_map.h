@@ -53,6 +53,9 @@ struct SkySample {
 /// map must not be black.
 SkySample sample_map(const EnvironmentMap& map, const std::array<double, 4>& u);
 
+/// Of any texel and colour [W/m²/sr].
+double largest_radiance(const EnvironmentMap& map);
+
 /// Mean over all directions [W/m²/sr]; times 4 pi is what a point receives.
 Vector3d mean_radiance(const EnvironmentMap& map);
 

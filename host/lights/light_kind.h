@@ -7,10 +7,16 @@
 
 namespace pointgi {
 
+/// What of the scene a kind may need, and where it says what the user should know.
+struct LightContext {
+  UpAxis up;
+  std::vector<std::string>& warnings;
+};
+
 struct LightKind {
   std::vector<std::string> keys; ///< beside `type`
   /// Reads these keys into everything of `light` but its type and place. Throws Error(input).
-  void (*load)(const TableReader& table, LightSettings& light);
+  void (*load)(const TableReader& table, const LightContext& context, LightSettings& light);
 };
 
 /// The row of a kind.

@@ -5,7 +5,7 @@ namespace pointgi {
 
 namespace {
 
-void load(const TableReader& table, LightSettings& light) {
+void load(const TableReader& table, const LightContext&, LightSettings& light) {
   light.vector = table.need_vector3("position", limits::coordinate);
   light.is_far = false;
   light.strength = table.need_vector3("power_w", limits::light) / (4.0 * 3.14159265358979323846);

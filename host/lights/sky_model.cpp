@@ -129,18 +129,4 @@ RgbImage sky_image(const SkyModel& model, const SkyFrame& frame, int width, int 
   return image;
 }
 
-SunDisc device_sun_disc(const SkyModel& model, double scale) {
-  const double radius = 0.5 * sun_diameter_deg * pi / 180.0;
-  // A cosine-weighted disc across the beam: pi sin², which is its solid angle to 5e-6.
-  const double projected = pi * std::pow(std::sin(radius), 2);
-  SunDisc disc{};
-  for (int k = 0; k < 3; ++k) {
-    disc.towards[k] = static_cast<float>(model.towards_sun[k]);
-    disc.radiance[k] = static_cast<float>(model.sun_irradiance[k] / projected / scale);
-  }
-  disc.sine2 = static_cast<float>(std::pow(std::sin(radius), 2));
-  disc.solid_angle = static_cast<float>(4.0 * pi * std::pow(std::sin(0.5 * radius), 2));
-  return disc;
-}
-
 } // namespace pointgi

@@ -3,7 +3,6 @@
 #include "host/image/rgb_image.h"
 #include "host/lights/clear_sky.h"
 #include "host/lights/sky_frame.h"
-#include "shared/sky_types.h"
 #include <array>
 
 namespace pointgi {
@@ -41,8 +40,5 @@ Vector3d sky_radiance(const SkyModel& model, const Vector3d& direction);
 /// The sky as a latitude-longitude map (host/lights/environment_map.h), each pixel the radiance at its centre. An even
 /// height lets the horizon fall between two rows.
 RgbImage sky_image(const SkyModel& model, const SkyFrame& frame, int width, int height);
-
-/// The disc that gives sun_irradiance across its beam; radiances divided by `scale`.
-SunDisc device_sun_disc(const SkyModel& model, double scale);
 
 } // namespace pointgi

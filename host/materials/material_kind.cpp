@@ -39,7 +39,7 @@ std::vector<std::string> joined(const std::vector<std::string>& first, const std
 }
 
 const std::vector<std::string>& diffuse_keys() {
-  static const std::vector<std::string> keys{"albedo", "colour_space", "emission"};
+  static const std::vector<std::string> keys{"albedo", "colour_space", "emission", "two_sided"};
   return keys;
 }
 
@@ -47,6 +47,7 @@ void load_diffuse_keys(const TableReader& table, MaterialSettings& material) {
   material.flags |= MATERIAL_REFLECTS_DIFFUSELY;
   material.albedo = table.vector3("albedo", limits::reflectance);
   if (const auto emission = table.vector3("emission", limits::light)) material.emission = *emission;
+  if (table.boolean("two_sided").value_or(false)) material.flags |= MATERIAL_TWO_SIDED;
   if (const auto space = table.choice("colour_space", {"srgb", "linear"}))
     material.colour_space = *space == "srgb" ? ColourSpace::srgb : ColourSpace::linear;
 }

@@ -23,6 +23,7 @@ std::string group_options(WorkGroup group) {
 std::string light_options(unsigned lights) {
   if (lights == 0) return {};
   std::string options = " -D HAS_DELTA_LIGHTS";
+  if ((lights & SIZED_LIGHTS) != 0) options += " -D HAS_LIGHT_DISCS";
 #define OPTION(ID, name)                                                                                               \
   options += (lights >> LIGHT_##ID & 1u) != 0 ? " -D WITH_LIGHT_" #ID "=1" : " -D WITH_LIGHT_" #ID "=0";
   LIGHT_KINDS(OPTION)
@@ -43,8 +44,8 @@ std::string material_options(unsigned materials, unsigned flags) {
 
 std::string feature_options(const SceneFeatures& features) {
   return light_options(features.lights) + (features.emitters ? " -D HAS_EMITTERS" : "") +
-         (features.environment ? " -D HAS_ENVIRONMENT" : "") + (features.radiosity ? " -D HAS_RADIOSITY" : "") +
-         (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
+         (features.environment ? " -D HAS_ENVIRONMENT" : "") + (features.sky_map ? " -D HAS_SKY_MAP" : "") +
+         (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
          (features.specular() ? material_options(features.materials, features.material_flags) : "") +
          (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
                                 : "");
@@ -57,9 +58,10 @@ SceneFeatures features_on(const DeviceInfo& device, const SceneFeatures& of_scen
   if (device.is_cpu) return f;
   f.materials = f.specular() ? all_materials : 0u;
   f.material_flags = f.specular() ? all_material_flags : 0u;
-  const bool lit = f.lights != 0 || f.emitters || f.environment || f.radiosity;
+  const bool lit = f.lights != 0 || f.emitters || f.environment || f.radiosity || f.sky_map;
   if (lit) f.emitters = true;
-  if (lit && f.shadow_rays) f.lights = all_lights, f.environment = true;
+  if (lit) f.lights = f.shadow_rays ? all_lights : SIZED_LIGHTS;
+  if (lit && f.shadow_rays) f.environment = true;
   return f;
 }
 

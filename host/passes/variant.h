@@ -36,6 +36,7 @@ struct SceneFeatures {
   unsigned materials = 0;      ///< bit MATERIAL_<ID> of each kind of material (shared/material_kinds.h)
   unsigned material_flags = 0; ///< what these materials do: MATERIAL_...; kinds count only where one is specular
   unsigned gather_k = 0;       ///< of the picture: photons an estimate of caustics; 0: there are none
+  bool sky_map = false;        ///< light from all around is a map
 
   bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };

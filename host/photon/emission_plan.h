@@ -12,7 +12,7 @@ struct PhotonSources {
   std::vector<DeltaLight> delta;
   std::vector<Emitter> emitters;              ///< chosen by their shares; all of them are one source
   std::vector<std::array<float, 4>> radiance; ///< of each emitter's front, scaled; [3] 0
-  std::array<float, 3> environment{};         ///< radiance from every direction, scaled
+  std::array<float, 3> environment{};         ///< radiance from every direction, of a map the mean, scaled
 
   bool has_environment() const { return environment[0] + environment[1] + environment[2] > 0.0f; }
 };

@@ -1,5 +1,6 @@
 #include "host/photon/trace_photons.h"
 #include "host/cl/batches.h"
+#include "host/passes/device_lights.h"
 #include "host/passes/visibility.h"
 #include "host/photon/diffuse_photons.h"
 #include "host/photon/kept_photons.h"
@@ -54,8 +55,15 @@ void book(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger
   }
 }
 
-SceneFeatures features_of(const DeviceLighting& lighting) {
+/// Whether photons set out in directions of the environment's map.
+bool from_map(const PhotonRequest& request) {
+  return request.lighting.sky != nullptr && request.sources.has_environment();
+}
+
+SceneFeatures features_of(const PhotonRequest& request) {
+  const DeviceLighting& lighting = request.lighting;
   SceneFeatures features;
+  features.sky_map = from_map(request);
   features.lights = lighting.light_types;
   features.materials = lighting.material_types;
   features.material_flags = lighting.flags;
@@ -94,7 +102,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   TracedPhotons traced;
   if (request.plan.photons == 0) return traced;
   const Program program =
-      trace_photons_program(request.variant, features_on(session.info(), features_of(request.lighting)), request.start);
+      trace_photons_program(request.variant, features_on(session.info(), features_of(request)), request.start);
   cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
   RenderParams params = request.lighting.params;
   params.seed += request.flight * 0x9e3779b9u;
@@ -102,10 +110,9 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   std::copy_n(request.sources.environment.begin(), 3, params.environment);
   params.delta_lights = static_cast<pg_uint>(request.sources.delta.size());
   params.emitters = static_cast<pg_uint>(request.sources.emitters.size());
-  const auto device_params = session.upload(&params, 1);
-  const auto materials = session.upload(request.lighting.materials);
-  const auto delta = session.upload(request.sources.delta);
-  const auto emitters = session.upload(request.sources.emitters);
+  DeviceLights lights = upload_lights(session, request.lighting, params, from_map(request));
+  lights.delta = session.upload(request.sources.delta);
+  lights.emitters = session.upload(request.sources.emitters);
   const auto radiance = session.upload(request.sources.radiance);
   const auto aims = session.upload(request.plan.aims);
   const auto leaves = session.upload(request.leaves.leaves);
@@ -123,7 +130,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
     }
     const double seconds = session.launch(
         kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points, request.normal_field,
-        device_params, materials, delta, emitters, radiance, aims, leaves, splats, leaf_of, flights,
+        lights.arguments(), radiance, aims, leaves, splats, leaf_of, flights,
         static_cast<cl_uint>(request.plan.aims.size()), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     traced.ledger.device_seconds += seconds;
     auto number = static_cast<std::uint32_t>(first);

@@ -1,5 +1,6 @@
 #include "host/radiosity/point_irradiance.h"
 #include "host/cl/batches.h"
+#include "host/passes/device_lights.h"
 
 namespace pointgi {
 
@@ -14,21 +15,19 @@ Buffer<float> direct_irradiance_of_points(Session& session, const DevicePools& p
                                           const DeviceLighting& lighting, double side, std::size_t points,
                                           unsigned samples, bool with_emitters, const std::function<bool()>& stop) {
   SceneFeatures features{lighting.light_types, with_emitters && !lighting.emitters.empty(), lighting.has_environment};
-  if (!session.info().is_cpu) features = {all_lights, with_emitters, true}; // one of two programs: features_on()
+  if (!session.info().is_cpu) features = {all_lights, with_emitters, true}; // one of few programs: features_on()
+  features.sky_map = lighting.sky != nullptr;
   const Program program = direct_irradiance_program(variant, features);
   cl::Kernel kernel = session.kernel(program.file, program.options, "direct_irradiance_of_points");
   RenderParams params = lighting.params;
   params.step_delta = static_cast<float>(variant.step_delta / side);
-  const auto device_params = session.upload(&params, 1);
-  const auto materials = session.upload(lighting.materials);
-  const auto delta = session.upload(lighting.delta);
-  const auto emitters = session.upload(lighting.emitters);
+  const DeviceLights lights = upload_lights(session, lighting, params, true);
   auto irradiance = session.allocate<float>(3 * points);
   session.fill(irradiance, 0.0f, 3 * points);
   Pace pace(first_points, busy_work_items(session.info()));
   for_each_batch(EqualItems{points}, pace, {stop, {}}, [&](std::size_t first, std::size_t count) {
     return session.launch(kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points,
-                          device_params, materials, delta, emitters, irradiance, static_cast<cl_uint>(first),
+                          lights.arguments(), irradiance, static_cast<cl_uint>(first),
                           static_cast<cl_uint>(first + count), samples);
   });
   return irradiance;

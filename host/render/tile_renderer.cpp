@@ -4,21 +4,43 @@
 
 namespace pointgi {
 
+namespace {
+
+/// POOL_PARAMS of kernels/lib/pools.cl, in its order.
+std::vector<cl::Memory> pool_arguments(const DevicePools& pools, const Buffer<cl_float4>* irradiance,
+                                       const Buffer<cl_float4>* normal_field, const DevicePhotonMap* photons) {
+  std::vector<cl::Memory> all{pools.nodes, pools.leaves, pools.points};
+  if (irradiance != nullptr) all.push_back(irradiance->handle);
+  if (normal_field != nullptr) all.push_back(normal_field->handle);
+  if (photons != nullptr)
+    all.insert(all.end(),
+               {photons->nodes.handle, photons->buckets.handle, photons->params.handle, photons->at_points.handle});
+  return all;
+}
+
+} // namespace
+
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
                            const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
                            const DevicePhotonMap* photons)
-    : session_(session), pools_(pools), params_(lighting.params), grouping_(variant.grouping),
-      eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
-      irradiance_(paths ? nullptr : irradiance), normal_field_(normal_field), photons_(photons) {
+    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr)),
+      points_(pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons)), params_(lighting.params),
+      grouping_(variant.grouping), eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
+      film_channels_(photons != nullptr        ? FILM_CHANNELS_CAUSTIC
+                     : normal_field != nullptr ? FILM_CHANNELS_SPECULAR
+                                               : FILM_CHANNELS) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
-  const bool asks_lights = paths || shadow_rays; // without, splats that shine are still seen, and so is the sky
-  SceneFeatures features{asks_lights ? lighting.light_types : 0u, !lighting.emitters.empty(),
-                         asks_lights && lighting.has_environment, irradiance_ != nullptr, asks_lights};
-  if (normal_field_ != nullptr) {
+  // Without, what shines and has a size is still seen, and so is the sky.
+  const bool asks_lights = paths || shadow_rays;
+  SceneFeatures features{asks_lights ? lighting.light_types : lighting.light_types & SIZED_LIGHTS,
+                         !lighting.emitters.empty(), asks_lights && lighting.has_environment,
+                         !paths && irradiance != nullptr, asks_lights};
+  features.sky_map = lighting.sky != nullptr;
+  if (normal_field != nullptr) {
     features.materials = lighting.material_types;
     features.material_flags = lighting.flags;
-    features.gather_k = photons_ != nullptr ? photons_->k : 0;
+    features.gather_k = photons != nullptr ? photons->k : 0;
   }
   if (paths) {
     std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
@@ -29,10 +51,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
                 shade = paths ? path_program(variant, features, !paths->all) : shade_program(variant, features);
   eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");
   shade_ = session.kernel(shade.file, shade.options, paths ? "path_pixels" : "shade_pixels");
-  device_params_ = session.upload(&params_, 1);
-  materials_ = session.upload(lighting.materials);
-  delta_ = session.upload(lighting.delta);
-  emitters_ = session.upload(lighting.emitters);
+  lights_ = upload_lights(session, lighting, params_, true);
 }
 
 TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint first_sample) {
@@ -47,23 +66,11 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
   const LaunchShape squares = LaunchShape::grid(parts(width, PACKET_COLUMNS), parts(height, PACKET_ROWS), 1, 1);
   const auto number = [](auto value) { return static_cast<cl_uint>(value); };
   TileSeconds seconds;
-  seconds.eye = session_.launch(eye_rays_, grouping_ == RayGrouping::packet ? squares : pixels(eye_group_),
-                                pools_.nodes, pools_.leaves, pools_.points, device_params_, hits_, number(x), number(y),
-                                number(columns), number(rows), number(first_sample));
-  const auto shade = [&](const auto&... pools) {
-    return session_.launch(shade_, pixels(shade_group_), pools..., device_params_, materials_, delta_, emitters_, hits_,
-                           film_, number(x), number(y), number(columns), number(rows), number(first_sample));
-  };
-  const auto with_photons = [&](const auto&... pools) {
-    return photons_ != nullptr
-               ? shade(pools..., photons_->nodes, photons_->buckets, photons_->params, photons_->at_points)
-               : shade(pools...);
-  };
-  const auto with_field = [&](const auto&... pools) {
-    return normal_field_ != nullptr ? with_photons(pools..., *normal_field_) : with_photons(pools...);
-  };
-  seconds.shade = irradiance_ != nullptr ? with_field(pools_.nodes, pools_.leaves, pools_.points, *irradiance_)
-                                         : with_field(pools_.nodes, pools_.leaves, pools_.points);
+  seconds.eye =
+      session_.launch(eye_rays_, grouping_ == RayGrouping::packet ? squares : pixels(eye_group_), octree_,
+                      lights_.params, hits_, number(x), number(y), number(columns), number(rows), number(first_sample));
+  seconds.shade = session_.launch(shade_, pixels(shade_group_), points_, lights_.arguments(), hits_, film_, number(x),
+                                  number(y), number(columns), number(rows), number(first_sample));
   return seconds;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// A tile of the picture on the device: hits of its eye rays, then its film.
+#include "host/passes/device_lights.h"
 #include "host/passes/device_pools.h"
 #include "host/photon/device_photon_map.h"
 #include "host/render/light_paths.h"
@@ -32,11 +33,7 @@ public:
   TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
 
   /// Scalars a pixel of the film: FILM_CHANNELS, or FILM_CHANNELS_SPECULAR with a normal field.
-  std::size_t film_channels() const {
-    return photons_ != nullptr        ? FILM_CHANNELS_CAUSTIC
-           : normal_field_ != nullptr ? FILM_CHANNELS_SPECULAR
-                                      : FILM_CHANNELS;
-  }
+  std::size_t film_channels() const { return film_channels_; }
 
   /// The film of the last tile, film_channels() a pixel: sums over the samples of all passes since the first.
   std::vector<float> film(int columns, int rows);
@@ -46,17 +43,13 @@ public:
 
 private:
   Session& session_;
-  const DevicePools& pools_;
+  std::vector<cl::Memory> octree_, points_; ///< OCTREE_PARAMS and POOL_PARAMS (kernels/lib/pools.cl)
   RenderParams params_;
   RayGrouping grouping_;
   WorkGroup eye_group_, shade_group_;
   cl::Kernel eye_rays_, shade_;
-  Buffer<RenderParams> device_params_;
-  Buffer<Material> materials_;
-  Buffer<DeltaLight> delta_;
-  Buffer<Emitter> emitters_;
-  const Buffer<cl_float4>*irradiance_, *normal_field_;
-  const DevicePhotonMap* photons_;
+  DeviceLights lights_;
+  std::size_t film_channels_;
   Buffer<EyeHits> hits_;
   Buffer<float> film_;
 };

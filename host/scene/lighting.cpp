@@ -1,4 +1,5 @@
 #include "host/scene/lighting.h"
+#include "host/lights/environment_map.h"
 #include "host/scene/shares.h"
 #include <Eigen/Geometry>
 #include <cmath>
@@ -20,6 +21,7 @@ Vector3d cube_strength(const LightSettings& light, const Frame& frame) {
 
 RadianceScale choose_scale(const Scene& scene, const Frame& frame) {
   double largest = scene.environment.maxCoeff();
+  if (scene.sky != nullptr) largest = std::max(largest, largest_radiance(*scene.sky));
   for (const MaterialSettings& material : scene.materials)
     largest = std::max(largest, material.emission.maxCoeff());
   for (const LightSettings& light : scene.lights)
@@ -160,14 +162,15 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   });
   RenderParams& params = result.params;
   params.camera = device_camera(scene, frame);
-  copy3(scene.environment / scale, params.environment);
+  result.sky = scene.sky;
+  copy3((scene.sky != nullptr ? mean_radiance(*scene.sky) : scene.environment) / scale, params.environment);
   params.samples = static_cast<pg_uint>(scene.render.spp);
   params.seed = scene.render.seed;
   params.jitter = scene.render.jitter ? 1u : 0u;
   params.most_bounces = scene.render.max_depth ? static_cast<pg_uint>(*scene.render.max_depth) : NO_BOUNCE_LIMIT;
   params.delta_lights = static_cast<pg_uint>(result.delta.size());
   params.emitters = static_cast<pg_uint>(result.emitters.size());
-  result.has_environment = scene.environment.maxCoeff() > 0.0;
+  result.has_environment = scene.sky != nullptr || scene.environment.maxCoeff() > 0.0;
   return result;
 }
 

@@ -19,6 +19,7 @@ struct DeviceLighting {
   std::vector<DeltaLight> delta;   ///< point and directional lights with power > 0
   std::vector<Emitter> emitters;   ///< splats of emitting materials
   bool has_environment = false;
+  std::shared_ptr<const EnvironmentMap> sky; ///< the environment's map, not yet scaled; null: params.environment alone
 
   bool has_light() const { return !delta.empty() || !emitters.empty() || has_environment; }
   /// Whether some splat's material, not only some material, has this flag (MATERIAL_...).

@@ -46,6 +46,8 @@ inline constexpr NumberRange fov{0.0, 180.0, true, true, "of degrees > 0 and < 1
 inline constexpr NumberRange exposure{-100.0, 100.0, false, false, "of stops from -100 to 100"};
 inline constexpr NumberRange reflectance{0.0, 1.0, false, false, "from 0 to 1 (above 1 it would create energy)"};
 inline constexpr NumberRange light{0.0, 1e30, false, false, "from 0 to 1e30 (light cannot be negative)"};
+inline constexpr NumberRange latitude{-90.0, 90.0, false, false, "of degrees from -90 to 90, north positive"};
+inline constexpr NumberRange longitude{-180.0, 180.0, false, false, "of degrees from -180 to 180, east positive"};
 inline constexpr NumberRange absorption{0.0, 1e18, false, false, "from 0 to 1e18"};
 inline constexpr NumberRange ior{0.0, 1e6, true, false, "> 0 and at most 1e6"};
 inline constexpr NumberRange roughness{0.0, 1.0, false, false, "from 0 (smooth) to 1"};

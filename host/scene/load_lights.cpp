@@ -24,13 +24,13 @@ LightType type_called(const std::string& name) {
 
 } // namespace
 
-std::vector<LightSettings> load_lights(const TableReader& root) {
+std::vector<LightSettings> load_lights(const TableReader& root, UpAxis up, std::vector<std::string>& warnings) {
   std::vector<LightSettings> lights;
   for (const TableReader& table : root.tables("light")) {
     LightSettings& light = lights.emplace_back();
     light.type = type_called(table.typed(no_common_keys, typed_keys()));
     light.place = table.place();
-    kind_of(light.type).load(table, light);
+    kind_of(light.type).load(table, {up, warnings}, light);
   }
   return lights;
 }

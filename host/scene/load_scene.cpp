@@ -42,7 +42,8 @@ bool shines(const Scene& scene) {
   for (const MaterialSettings& material : scene.materials)
     if (material.emission.maxCoeff() > 0) emitting.insert(material.name);
   const auto emits = [&](const auto& object) { return emitting.count(object.material) != 0; };
-  return scene.environment.maxCoeff() > 0 || std::any_of(scene.lights.begin(), scene.lights.end(), lit) ||
+  return scene.sky != nullptr || scene.environment.maxCoeff() > 0 ||
+         std::any_of(scene.lights.begin(), scene.lights.end(), lit) ||
          std::any_of(scene.clouds.begin(), scene.clouds.end(), emits) ||
          std::any_of(scene.shapes.begin(), scene.shapes.end(), emits);
 }
@@ -68,8 +69,8 @@ Scene scene_of(const SceneDocument& document) {
   const MaterialNames names(scene.materials);
   scene.clouds = load_clouds(root, names, document.scene_file, document.in_memory);
   scene.shapes = load_shapes(root, names);
-  scene.lights = load_lights(root);
-  load_environment(root, scene.environment);
+  scene.lights = load_lights(root, scene.up, scene.warnings);
+  load_environment(root, document.scene_file, scene);
   load_radiosity(root, scene.radiosity);
   load_caustics(root, scene.caustics);
   load_octree(root, scene.octree);

@@ -17,7 +17,10 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity);
 void load_caustics(const TableReader& root, CausticSettings& caustics);
 void load_octree(const TableReader& root, OctreeSettings& octree);
 void load_traversal(const TableReader& root, TraversalSettings& traversal);
-void load_environment(const TableReader& root, Vector3d& radiance);
+
+/// Light from all around: of the section, or of a light that brings a sky; of more than one of these, refused. Goes
+/// after load_lights(). `scene_file`: a map is relative to its folder.
+void load_environment(const TableReader& root, const std::string& scene_file, Scene& scene);
 
 /// Appends to `warnings` where a key will have no effect.
 std::vector<MaterialSettings> load_materials(const TableReader& root, std::vector<std::string>& warnings);
@@ -41,6 +44,7 @@ std::vector<CloudSettings> load_clouds(const TableReader& root, const MaterialNa
                                        const std::string& scene_file, const CloudsInMemory& in_memory);
 
 std::vector<ShapeSettings> load_shapes(const TableReader& root, const MaterialNames& materials);
-std::vector<LightSettings> load_lights(const TableReader& root);
+/// Appends to `warnings` where a light gives none.
+std::vector<LightSettings> load_lights(const TableReader& root, UpAxis up, std::vector<std::string>& warnings);
 
 } // namespace pointgi

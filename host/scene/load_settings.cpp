@@ -1,5 +1,4 @@
-/// The sections that stand once in a scene: [render], [camera], [radiosity], [caustics], [octree], [traversal],
-/// [environment].
+/// The sections that stand once in a scene: [render], [camera], [radiosity], [caustics], [octree], [traversal].
 #include "host/scene/load_sections.h"
 #include "host/scene/radiosity_words.h"
 #include <Eigen/Geometry>
@@ -157,13 +156,6 @@ void load_traversal(const TableReader& root, TraversalSettings& traversal) {
     traversal.stepping = *stepping == name_of(Stepping::exact) ? Stepping::exact : Stepping::absolute_delta;
   if (const auto delta = table->number("step_delta", limits::length)) traversal.step_delta = *delta;
   if (const auto fast = table->boolean("fast_math")) traversal.fast_math = *fast;
-}
-
-void load_environment(const TableReader& root, Vector3d& radiance) {
-  const std::optional<TableReader> table = root.table("environment");
-  if (!table) return;
-  table->allow_only({"radiance"});
-  radiance = table->need_vector3("radiance", limits::light);
 }
 
 } // namespace pointgi

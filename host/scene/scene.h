@@ -118,6 +118,8 @@ enum class LightType : pg_uint { LIGHT_KINDS(LIGHT_TYPE) };
 #undef LIGHT_TYPE
 const char* name_of(LightType type);
 
+struct EnvironmentMap; // host/lights/environment_map.h
+
 struct LightSettings {
   LightType type = LightType::point;
   bool is_far = false;        ///< parallel light from outside the scene
@@ -125,6 +127,7 @@ struct LightSettings {
   Vector3d strength{0, 0, 0}; ///< intensity [W/sr]; of a far light the irradiance [W/m²] of a surface that faces it
   double sine2 = 0.0;         ///< of a far light: sine squared of half the angle under which it is seen
   SourcePlace place;
+  std::shared_ptr<const EnvironmentMap> sky = nullptr; ///< that the light brings, or null
 };
 
 struct RadiositySettings {
@@ -216,7 +219,8 @@ struct Scene {
   std::vector<CloudSettings> clouds;
   std::vector<ShapeSettings> shapes;
   std::vector<LightSettings> lights;
-  Vector3d environment{0, 0, 0}; ///< radiance [W/m²/sr] from every direction
+  Vector3d environment{0, 0, 0};             ///< radiance [W/m²/sr] from every direction; 0 where there is a map
+  std::shared_ptr<const EnvironmentMap> sky; ///< light from all around that is not the same everywhere, or null
   RadiositySettings radiosity;
   CausticSettings caustics;
   OctreeSettings octree;

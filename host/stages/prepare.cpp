@@ -2,6 +2,7 @@
 #include "host/cloud/input_file.h"
 #include "host/run.h"
 #include "host/scene/merge_coincident.h"
+#include "host/scene/sheet_sides.h"
 #include "host/view/default_view.h"
 #include <numeric>
 
@@ -32,7 +33,7 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
 /// What the user left open is chosen so that the picture is worth looking at.
 void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
   if (!scene.camera.chosen) log_info("{}", choose_camera(scene, splats));
-  if (bare && scene.lights.empty() && scene.environment.isZero()) choose_lights(scene);
+  if (bare && scene.lights.empty() && scene.sky == nullptr && scene.environment.isZero()) choose_lights(scene);
 }
 
 } // namespace
@@ -49,6 +50,8 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   std::iota(placed.id.begin(), placed.id.end(), 0u);
   if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)
     log_info("{} points that lie on others were merged with them", merged);
+  if (const std::size_t sheets = divide_sheets(scene, placed.splats, placed.id); sheets > 0)
+    log_info("{} splats are two-sided: each side is a point of its own", sheets);
   return placed;
 }
 

@@ -29,7 +29,8 @@ std::string suspects(const Scene& scene) {
     break;
   }
   if (!scene.lights.empty()) list += "; " + place_of(scene.lights.front());
-  if (scene.environment.maxCoeff() > 0.0) list += "; what surrounds all else keeps the light of [environment] out";
+  if (scene.sky != nullptr || scene.environment.maxCoeff() > 0.0)
+    list += "; what surrounds all else keeps the light of [environment] out";
   if (scene.render.max_depth)
     list += "; render.max_depth = " + std::to_string(*scene.render.max_depth) + " may leave out too much";
   return list;

@@ -137,16 +137,22 @@ std::vector<SceneFeatures> gpu_picture_features() {
     return features;
   };
   std::vector<SceneFeatures> sets{{}, with_materials({})};
-  for (const SceneFeatures& light :
-       {SceneFeatures{all_lights, true, true, false}, SceneFeatures{all_lights, true, true, true},
-        SceneFeatures{0, true, false, true, false}}) {
+  const auto add = [&](SceneFeatures light) {
     sets.push_back(light);
     SceneFeatures specular = with_materials(light);
     for (const unsigned k : {0u, 64u, 512u, 1024u}) {
       specular.gather_k = k;
       sets.push_back(specular);
     }
-  }
+  };
+  for (const SceneFeatures& light :
+       {SceneFeatures{all_lights, true, true, false}, SceneFeatures{all_lights, true, true, true},
+        SceneFeatures{SIZED_LIGHTS, true, false, true, false}})
+    for (const bool sky_map : {false, true}) {
+      SceneFeatures features = light;
+      features.sky_map = sky_map;
+      add(features);
+    }
   return sets;
 }
 
@@ -186,7 +192,12 @@ std::vector<ProgramUse> all_programs() {
     if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
     if (usual_group) add(shade_program(v, {}), cpu, gpu);
     add(direct_irradiance_program(v, {all_lights, true, true}), cpu, gpu);
-    if (usual_walk) add(direct_irradiance_program(v, {all_lights, false, true}), cpu, gpu);
+    for (const bool emitters : {false, true}) {
+      SceneFeatures with_map{all_lights, emitters, true};
+      with_map.sky_map = true;
+      if (usual_walk) add(direct_irradiance_program(v, {all_lights, emitters, true}), cpu, gpu);
+      if (usual_walk) add(direct_irradiance_program(v, with_map), cpu, gpu);
+    }
     add(specular_rays_program(v), cpu, gpu);
     if (usual_walk && usual_group) add(samplers_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
@@ -198,16 +209,21 @@ std::vector<ProgramUse> all_programs() {
     for (const SceneFeatures& features : gpu_picture_features())
       add(shade_program(v, features), cpu, gpu);
     for (const bool some_paths : {false, true})
-      for (const bool specular : {false, true}) {
-        SceneFeatures features = traced;
-        if (!specular) features.materials = features.material_flags = 0;
-        add(path_program(v, features, some_paths), cpu, gpu);
-      }
+      for (const bool specular : {false, true})
+        for (const bool sky_map : {false, true}) {
+          SceneFeatures features = traced;
+          if (!specular) features.materials = features.material_flags = 0;
+          features.sky_map = sky_map;
+          add(path_program(v, features, some_paths), cpu, gpu);
+        }
     for (const PhotonStart start : {PhotonStart::aimed, PhotonStart::equal_power, PhotonStart::from_surfaces})
       for (const bool from_lights : {false, true}) { // or from emitting splats and the environment alone
         SceneFeatures features = traced;
         if (!from_lights) features.lights = 0, features.emitters = features.environment = false;
         add(trace_photons_program(v, features, start), cpu, gpu);
+        features.sky_map = true; // always among lights: features_on()
+        if (from_lights && start != PhotonStart::from_surfaces)
+          add(trace_photons_program(v, features, start), cpu, gpu);
       }
   }
   return uses;

@@ -1,6 +1,35 @@
-/* What all kinds of light share. */
+/* What all kinds of light share.
+ *   HAS_SKY_MAP  light from all around is a map; else it is the same from every direction */
 #include "lib/sampling.cl"
 #include "traverse/traversal.cl"
+#ifdef HAS_SKY_MAP
+#include "lights/sky_map.cl"
+#endif
+
+typedef struct Lights {
+  __constant RenderParams* params;
+  const __global Material* materials;
+  const __global DeltaLight* delta;
+  const __global Emitter* emitters;
+#ifdef HAS_SKY_MAP
+  Sky sky;
+#endif
+} Lights;
+
+/* Kernels take LIGHT_PARAMS and make `Lights` of {LIGHT_ARGS} (host/passes/device_lights.h). */
+#define LIGHT_TABLE_PARAMS                                                            \
+  __constant RenderParams *params, const __global Material *materials,                \
+      const __global DeltaLight *delta_lights, const __global Emitter *emitters
+#define LIGHT_TABLE_ARGS params, materials, delta_lights, emitters
+#ifdef HAS_SKY_MAP
+#define LIGHT_PARAMS                                                                                                 \
+  LIGHT_TABLE_PARAMS, __constant SkyMap *sky_map, const __global SkyRow *sky_rows, const __global float *sky_columns, \
+      const __global float4 *sky_texels
+#define LIGHT_ARGS LIGHT_TABLE_ARGS, {sky_map, sky_rows, sky_columns, sky_texels}
+#else
+#define LIGHT_PARAMS LIGHT_TABLE_PARAMS
+#define LIGHT_ARGS LIGHT_TABLE_ARGS
+#endif
 
 /* A place or direction from which light may come, and what it adds to the irradiance when nothing is in between. */
 typedef struct LightSample {

@@ -1,24 +1,23 @@
 /* Light that reaches a surface straight from its source, by shadow rays: the kinds of light that are compiled in.
  *   HAS_DELTA_LIGHTS  the scene has a [[light]]
  *   WITH_LIGHT_<ID>   of each kind of shared/light_kinds.h, where HAS_DELTA_LIGHTS: 1 where the scene has it, else 0
+ *   HAS_LIGHT_DISCS   one of them has a size (SIZED_LIGHTS)
  *   HAS_EMITTERS      some splats may shine
  *   HAS_ENVIRONMENT   the environment may shine
+ *   HAS_SKY_MAP       it is a map
  * On CPU devices these stand only where the scene has such lights; other devices have few programs for all scenes. */
 #include "lights/directional.cl"
 #include "lights/emitter.cl"
 #include "lights/point.cl"
 #include "lights/sky.cl"
+#include "lights/sun.cl"
 #include "materials/materials.cl"
 
 /* Up to this many [[light]]s are all asked for every ray; of more, one, drawn in proportion to its strength. */
 #define ALL_DELTA_LIGHTS 4u
 
-typedef struct Lights {
-  __constant RenderParams* params;
-  const __global Material* materials;
-  const __global DeltaLight* delta;
-  const __global Emitter* emitters;
-} Lights;
+/* Use of random numbers at a vertex beside 1 to 3 for the kinds of light and those of kernels/render/eye_sample.cl (4 to 6). */
+#define DIMENSION_SECOND_SKY 7u
 
 /* The surface that is lit, as its viewer sees it: what the lobe of its material needs. */
 typedef struct Viewed {
@@ -98,6 +97,23 @@ static inline PhotonOrigin emit_from_light(const __global DeltaLight* light, flo
 }
 #endif
 
+#ifdef HAS_LIGHT_DISCS
+/* Radiance of [[light]] i along a ray that meets nothing, and the density with which sample_delta_light draws its direction. */
+static inline float3 light_towards(Lights lights, uint i, float3 direction, float* pdf) {
+  const __global DeltaLight* light = lights.delta + i;
+  float factor = 0.0f;
+  *pdf = 0.0f;
+#define FOR_LIGHT_1(ID, name)     \
+  if (light->type == LIGHT_##ID) \
+    factor = name##_towards(light, direction, pdf);
+  SIZED_LIGHT_KINDS(SAMPLE_LIGHT)
+#undef FOR_LIGHT_1
+  if (lights.params->delta_lights > ALL_DELTA_LIGHTS)
+    *pdf *= light->cumulative - (i > 0u ? lights.delta[i - 1u].cumulative : 0.0f);
+  return load3(light->strength) * factor;
+}
+#endif
+
 /* Irradiance H [W/m2, scaled] of the surface from all lights, one estimate; the mean over samples converges to it.
  * Adds the number of shadow rays traced to *rays. One place traces them all: the walk stands once in the code, and
  * work-items that shade different lights walk together. Where the surface has a lobe, s->highlight becomes the radiance that
@@ -116,10 +132,15 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
 #endif
 #ifdef HAS_ENVIRONMENT
   const float3 sky = load3_constant(lights.params->environment);
-  environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? 1u : 0u;
+  environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? SKY_SAMPLES : 0u;
 #endif
   for (uint i = 0u; i < delta_samples + emitter_samples + environment_samples; ++i) {
+#if defined(HAS_ENVIRONMENT) && defined(HAS_SKY_MAP)
+    const uint second = delta_samples + emitter_samples + 1u; /* of the map's two samples */
+    const float4 u = stratified4(id, i == second ? DIMENSION_SECOND_SKY : i < delta_samples ? 1u : i + 1u < second ? 2u : 3u);
+#else
     const float4 u = stratified4(id, i < delta_samples ? 1u : i < delta_samples + emitter_samples ? 2u : 3u);
+#endif
     LightSample light;
     bool faces = false;
 #ifdef HAS_DELTA_LIGHTS
@@ -131,8 +152,8 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
       faces = sample_emitter(POOL_ARGS, s, lights.materials, lights.emitters, lights.params->emitters, u, &light);
 #endif
 #ifdef HAS_ENVIRONMENT
-    if (i == delta_samples + emitter_samples)
-      faces = sample_sky(s, lights.params, u, &light);
+    if (i >= delta_samples + emitter_samples)
+      faces = sample_sky(s, lights, u, i - delta_samples - emitter_samples, &light);
 #endif
     if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays)) {
       sum += light.irradiance;

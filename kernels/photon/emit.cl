@@ -103,8 +103,14 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
     colour = e.power;
     e.ray.t_min = BEHIND_SURFACE(e.ends.origin_radius);
   } else {
+#ifdef HAS_SKY_MAP
+    const float4 texel = sky_map_sample(from.lights.sky, u, &towards);
+    colour = texel.xyz;
+    solid_angle = 1.0f / texel.w;
+#else
     colour = load3_constant(from.lights.params->environment);
     towards = cone_direction(towards, 1.0f, u.xy, &solid_angle);
+#endif
   }
 #ifdef EQUAL_POWER
   const float3 target = equal_target(POOL_ARGS, from, aim, number, id);

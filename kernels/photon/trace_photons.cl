@@ -62,9 +62,7 @@ static inline uint meet_surface(const Surface* s, const __global Material* mater
   return is_dark(*power) ? PHOTON_ABSORBED : PHOTON_ENDS;
 }
 
-__kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
-                            const __global DeltaLight* delta_lights, const __global Emitter* emitters,
-                            const __global float4* radiance, const __global PhotonAim* aims,
+__kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global PhotonAim* aims,
                             const __global PhotonLeaf* leaves, const __global uint* leaf_splats,
                             const __global uint* leaf_of, __global PhotonFlight* flights, uint aim_count, uint first,
                             uint count) {
@@ -72,7 +70,7 @@ __kernel void trace_photons(POOL_PARAMS, __constant RenderParams* params, const 
   if (item >= count)
     return;
   const __global PhotonAim* aim = aims + aim_of(aims, aim_count, first + item);
-  const PhotonSource from = {{params, materials, delta_lights, emitters}, radiance, leaves, leaf_splats};
+  const PhotonSource from = {{LIGHT_ARGS}, radiance, leaves, leaf_splats};
   SampleId id = {(uint2)(first + item, 0x20000000u), 0u, params->seed, 0u};
 #ifdef FROM_SURFACES
   const Emission e = look_for_light(POOL_ARGS, from, aim, first + item - aim->first, id);

@@ -18,15 +18,14 @@ static inline Surface surface_of_point(POOL_PARAMS, uint point) {
   return s;
 }
 
-__kernel void direct_irradiance_of_points(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
-                                          const __global DeltaLight* delta_lights, const __global Emitter* emitters,
-                                          __global float* irradiance, uint first, uint end, uint samples) {
+__kernel void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, __global float* irradiance, uint first, uint end,
+                                          uint samples) {
   const uint point = first + get_global_id(0);
   if (point >= end)
     return;
   float3 sum = (float3)(0.0f);
 #if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
-  const Lights lights = {params, materials, delta_lights, emitters};
+  const Lights lights = {LIGHT_ARGS};
   Surface surface = surface_of_point(POOL_ARGS, point);
   float rays = 0.0f;
   for (uint k = 0u; k < samples; ++k) {

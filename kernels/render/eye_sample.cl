@@ -6,7 +6,7 @@
 
 #define INVERSE_PI 0.31830989f
 
-/* Uses of random numbers at a vertex, after those of kernels/lights/lights.cl (1 to 3). */
+/* Uses of random numbers at a vertex, after those of kernels/lights/lights.cl (1 to 3, 7). */
 #define DIMENSION_BOUNCE 4u
 #define DIMENSION_ROULETTE 5u
 #define DIMENSION_SCATTER 6u
@@ -54,7 +54,7 @@ static inline void add_diffuse(float3 radiance, float* sums) {
 typedef struct RayChoice {
 #ifdef HAS_LOBES
   float lobe_pdf; /* of the lobe that has sent the ray out; 0: no sampled light could have found what it meets */
-  float sky_pdf;  /* with which the lights of the surface there were sampled in its direction */
+  float sky_pdf;  /* by the cosine at the surface there, in the ray's direction; 0: no sampled light was from there */
 #endif
   float unused;
 } RayChoice;
@@ -77,15 +77,31 @@ static inline float share_of_ray(RayChoice choice, float light_pdf) {
   return 1.0f;
 }
 
+/* What the ray finds that meets nothing. */
+static inline float3 far_light(Lights lights, float3 direction, RayChoice choice) {
+#ifdef HAS_LOBES
+  const SkyLight sky = sky_light(lights, direction, choice.sky_pdf);
+  float3 radiance = sky.radiance * share_of_ray(choice, sky.pdf);
+#else
+  float3 radiance = sky_light(lights, direction, 0.0f).radiance;
+#endif
+#ifdef HAS_LIGHT_DISCS
+  for (uint i = 0u; i < lights.params->delta_lights; ++i) {
+    float pdf;
+    const float3 of_light = light_towards(lights, i, direction, &pdf);
+#ifdef HAS_LOBES
+    pdf = choice.sky_pdf > 0.0f ? pdf : 0.0f;
+#endif
+    radiance += of_light * share_of_ray(choice, pdf);
+  }
+#endif
+  return radiance;
+}
+
 /* What the ray finds that meets nothing, or a surface that shines itself. */
 static inline float3 seen_light(Lights lights, bool met, const Surface* s, float3 direction, RayChoice choice) {
-  if (!met) {
-#ifdef HAS_LOBES
-    return sky_radiance(lights.params, direction) * share_of_ray(choice, choice.sky_pdf);
-#else
-    return sky_radiance(lights.params, direction);
-#endif
-  }
+  if (!met)
+    return far_light(lights, direction, choice);
 #ifdef HAS_EMITTERS
   if (s->front)
     return load3(lights.materials[s->material].emission) *
@@ -139,7 +155,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #endif
     }
   } else {
-    radiance = sky_radiance(lights.params, ray.direction);
+    radiance = far_light(lights, ray.direction, only_choice());
   }
   add_direct(radiance, sums);
 #ifdef HAS_RADIOSITY

@@ -11,15 +11,14 @@
 #include "render/group.cl"
 
 __kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
-void PIXEL_KERNEL(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
-                  const __global DeltaLight* delta_lights, const __global Emitter* emitters,
+void PIXEL_KERNEL(POOL_PARAMS, LIGHT_PARAMS,
                   const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint columns, uint rows,
                   uint first_sample) {
   __local PixelSamples samples_of[GROUP_PIXELS];
   const GroupItem item = group_item();
   const bool in_tile = item.column < columns && item.row < rows;
   const size_t at = item.row * (size_t)columns + item.column;
-  const Lights lights = {params, materials, delta_lights, emitters};
+  const Lights lights = {LIGHT_ARGS};
   const SampleId id = {(uint2)(first_x + item.column, first_y + item.row), first_sample + item.lane, params->seed};
   float sums[SAMPLE_SUMS];
   for (int c = 0; c < SAMPLE_SUMS; ++c)

@@ -55,8 +55,8 @@ static inline RayChoice choice_of(const Surface* s, const Scatter* scatter, floa
   RayChoice choice = only_choice();
 #ifdef HAS_LOBES
   choice.lobe_pdf = probability * scatter->pdf;
-#ifdef HAS_ENVIRONMENT
-  choice.sky_pdf = sky_pdf(s->normal, scatter->direction);
+#if defined(HAS_ENVIRONMENT) || defined(HAS_LIGHT_DISCS)
+  choice.sky_pdf = sky_cosine_pdf(s->normal, scatter->direction);
 #endif
 #endif
   return choice;

@@ -5,8 +5,15 @@
  * splats (kernels/lights/emitter.cl) and the environment (kernels/lights/sky.cl) are no [[light]]. */
 #define LIGHT_KINDS(ROW)                                                                                               \
   ROW(POINT, point)                                                                                                    \
-  ROW(DIRECTIONAL, directional)
+  ROW(DIRECTIONAL, directional)                                                                                        \
+  ROW(SUN, sun)
 
 #define LIGHT_KIND_NUMBER(ID, name) LIGHT_##ID,
 enum LightKindNumber { LIGHT_KINDS(LIGHT_KIND_NUMBER) LIGHT_KIND_COUNT };
+
+/* Those that have a size, so that a ray may meet them; their kernel files have <name>_towards, too. */
+#define SIZED_LIGHT_KINDS(ROW) ROW(SUN, sun)
+
+#define LIGHT_BIT(ID, name) (1u << LIGHT_##ID) |
+#define SIZED_LIGHTS (SIZED_LIGHT_KINDS(LIGHT_BIT) 0u)
 #endif

@@ -18,4 +18,5 @@ enum MaterialKindNumber { MATERIAL_KINDS(MATERIAL_KIND_NUMBER) MATERIAL_KIND_COU
 #define MATERIAL_SPECULAR 2u           /* rays go on from it: mirrored, refracted, or by a lobe */
 #define MATERIAL_HAS_LOBE 4u           /* the specular part is spread, so that sampled lights reach it */
 #define MATERIAL_TRANSMITS 8u          /* lets light through; what its backs show is the inside of the body */
+#define MATERIAL_TWO_SIDED 16u         /* a splat stands for a thin sheet, whose two sides reflect and emit alike */
 #endif

@@ -36,10 +36,18 @@ typedef struct OctreePoint {
   float position[3]; /* texel 0, bytes 0-11: root cube */
   float radius;      /* texel 0, bytes 12-15: splat radius, root cube */
   float normal[3];   /* texel 1, bytes 16-27: unit */
-  float material;    /* texel 1, bytes 28-31: index into the materials, a whole number below 2^24 */
+  float material;    /* texel 1, bytes 28-31: index into the materials, a whole number below SHEET_MATERIALS, plus
+                        SHEET_FRONT or SHEET_BACK where the point is a side of a sheet */
   float colour[3];   /* texel 2, bytes 32-43: diffuse reflectance rho, linear RGB, [0,1] */
   float area;        /* texel 2, bytes 44-47: effective area A_i, root cube squared */
 } OctreePoint;
+
+/* A splat of a two-sided material is two points that follow each other in the pool and differ in their normals alone:
+ * the front of the sheet, then its back. A ray meets both at the same t, and sees the one that faces it. */
+#define SHEET_FRONT 0.25f
+#define SHEET_BACK 0.5f
+#define SHEET_MATERIALS 2097152u /* 2^21: below it a float holds the quarters */
+#define SHEET_SIDE(material) ((material) - (float)(pg_uint)(material))
 
 /* The wide form of the same octree (N = 2): a node keeps the boxes of what its children really hold, radii included, so
  * a splat lies in one leaf only and no cell is listed. Boxes are widened by a little more than a hit's rounding. */
@@ -55,12 +63,14 @@ typedef struct WideNode {
 
 /* A leaf's splats in blocks of WIDE_LANES (8 or 16), structure of arrays, 32-bit words:
  *   0..3L-1 centre x, y, z;  3L..4L-1 radius (-1 in unused lanes);  4L..7L-1 normal x, y, z;  7L index of the block's
- *   first point in the point pool, the others follow it;  7L+1..8L-1 zero */
+ *   first point in the point pool, the others follow it;  7L+1 a bit for each lane that is a side of a sheet;
+ *   7L+2..8L-1 zero */
 #define WIDE_BLOCK_WORDS(lanes) (8 * (lanes))
 #define WIDE_CENTRE(lanes, axis) ((axis) * (lanes))
 #define WIDE_RADIUS(lanes) (3 * (lanes))
 #define WIDE_NORMAL(lanes, axis) ((4 + (axis)) * (lanes))
 #define WIDE_FIRST(lanes) (7 * (lanes))
+#define WIDE_SHEETS(lanes) (7 * (lanes) + 1)
 
 /* Deepest wide tree that a traversal's stack holds: seven waiting siblings a level. */
 #define WIDE_MAX_DEPTH 27

@@ -34,7 +34,7 @@ typedef struct Camera {
 
 typedef struct RenderParams {
   Camera camera;        /* bytes 0-63 */
-  float environment[3]; /* bytes 64-75: radiance from every direction, scaled */
+  float environment[3]; /* bytes 64-75: radiance from every direction, of a map the mean, scaled */
   pg_uint most_bounces; /* bytes 76-79: no path has more surface points; or NO_BOUNCE_LIMIT. For the path tracer, and
                            for what others see by way of specular surfaces */
   pg_uint samples;      /* bytes 80-83: samples a pixel */

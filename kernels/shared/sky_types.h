@@ -1,8 +1,8 @@
 #ifndef POINTGI_SHARED_SKY_TYPES_H
 #define POINTGI_SHARED_SKY_TYPES_H
 #include "shared/scalar.h"
-/* Light from infinitely far: a latitude-longitude map of radiance, constant on each of its texels, and the sun's disc.
- * Radiance [W/m2/sr], scaled as RenderParams. */
+/* Light from infinitely far: a latitude-longitude map of radiance [W/m2/sr, scaled as RenderParams], constant on each
+ * of its texels. */
 
 /* Row 0 is at the zenith; the middle of the columns looks forward, columns run clockwise as seen from above. */
 typedef struct SkyMap {
@@ -28,12 +28,5 @@ typedef struct SkyTexel {
   float radiance[3]; /* bytes 0-11 */
   float density;     /* bytes 12-15: with which sampling draws a direction in it [1/sr] */
 } SkyTexel;
-
-typedef struct SunDisc {
-  float towards[3];  /* bytes 0-11: unit vector to its centre, root cube */
-  float sine2;       /* bytes 12-15: sine squared of its angular radius, > 0 and < 1 */
-  float radiance[3]; /* bytes 16-27 */
-  float solid_angle; /* bytes 28-31 [sr]: 2 pi (1 - cosine of the radius) */
-} SunDisc;
 
 #endif

@@ -46,6 +46,11 @@ typedef struct RayPacketAnswer {
 #define SELF_HIT_REACH 1.5f
 #define SELF_HIT_HEIGHT 0.75f
 #define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
+/* Of a sheet (SHEET_FRONT) the side that faces against an end is the surface there as well, if the one that faces the
+ * same way is, and if the end is no higher than this above the disc's plane, in units of the two discs' radii: a sheet
+ * may bend as much as one that has one side, and of two sheets the other blocks where they lie more than half a radius
+ * apart. */
+#define SHEET_HEIGHT 0.25f
 /* Lengths that stand for rounding are a hundredth of the radii at hand, so that a small object in a large cube is
  * closed as it would be alone; never less than what coordinates near 1 and hits are rounded by, some 2^-21, and never
  * more than `most`. */

@@ -9,6 +9,7 @@ typedef struct BlockHits {
   lanes_f t, q, radius, nx, ny, nz;
   lanes_i inside; /* the ray meets the disc */
   uint first;     /* index of lane 0 in the point pool */
+  uint sheets;    /* bit k: lane k is a side of a sheet */
 } BlockHits;
 
 /* meet in lanes, bit-identical. */
@@ -29,6 +30,7 @@ static inline BlockHits meet_lanes(const __global float* block, float3 origin, f
   h.q = distance2 / r2;
   h.inside = (distance2 <= r2) & (h.radius > 0.0f);
   h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
+  h.sheets = as_uint(block[WIDE_SHEETS(WIDE_LANES)]);
   return h;
 }
 

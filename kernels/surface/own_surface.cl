@@ -1,6 +1,7 @@
 /* Which hits of a ray belong to the surfaces at its two ends: discs overlap, and those around an end stick out of the
  * surface that they stand for. kernels/surface/own_surface_lanes.cl says the same of a block of discs. */
 #include "lib/vector.cl"
+#include "shared/octree_types.h"
 #include "shared/traversal_types.h"
 
 typedef struct ShadowEnds {
@@ -36,6 +37,18 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float ste
          (distance < COINCIDENT(end_radius + radius) && cosine < -SELF_HIT_COSINE);
 }
 
+static inline bool is_sheet(float material) { return SHEET_SIDE(material) != 0.0f; }
+
+/* The normal by which a disc that is met `distance` from an end is judged there: of a sheet's two sides, which lie in one
+ * place, the one that faces as the end does speaks for both, where the end may lie on that sheet (SHEET_HEIGHT).
+ * normal.w: the disc's material. */
+static inline float3 normal_at_end(float3 end_normal, float end_radius, float3 direction, float distance, float radius,
+                                   float4 normal) {
+  const bool turned = is_sheet(normal.w) && dot3(normal.xyz, end_normal) < 0.0f &&
+                      distance * fabs(dot3(normal.xyz, direction)) < SHEET_HEIGHT * (end_radius + radius);
+  return turned ? -normal.xyz : normal.xyz;
+}
+
 /* Of a ray that carries light from surface to surface, a disc near its origin is met when the ray arrives at its front:
  * the surface is hollow there. Were it passed by, light would get out through the walls of what is closed: the inside
  * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
@@ -47,6 +60,7 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float ste
  * Of another material that continues the surface in its plane, discs stick over the edge: a ray that is thrown back does
  * not meet their far sides. */
 static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float4 normal) {
+  normal.xyz = normal_at_end(ends.origin_normal, ends.origin_radius, direction, t, radius, normal);
   float along = dot3(normal.xyz, direction);
 #ifdef HAS_SPECULAR
   if (ends.origin_material != 0u) {
@@ -65,9 +79,9 @@ static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t,
 }
 
 static inline bool belongs_to_ends(ShadowEnds ends, float3 direction, float t_max, float t, float radius,
-                                   float3 normal) {
+                                   float4 normal) {
   return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
-                        normal) ||
+                        normal_at_end(ends.origin_normal, ends.origin_radius, direction, t, radius, normal)) ||
          belongs_to_end(ends.target_normal, ends.target_radius, steepness_at_end(ends.target_normal, direction), t_max - t,
-                        radius, normal);
+                        radius, normal_at_end(ends.target_normal, ends.target_radius, direction, t_max - t, radius, normal));
 }

@@ -3,11 +3,24 @@
 #include "surface/disc_lanes.cl"
 #include "surface/own_surface.cl"
 
-/* belongs_to_end in lanes, to the same answers. */
-static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float steepness, lanes_f distance,
+/* Lanes whose normals normal_at_end turns round. */
+static inline lanes_i turned_lanes(float3 end_normal, float end_radius, float3 direction, lanes_f distance,
                                    const BlockHits* h) {
+  if (h->sheets == 0u)
+    return (lanes_i)(0);
+  const lanes_i sheet = (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u;
   const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
                              fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
+  const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
+  return sheet & (cosine < 0.0f) & (distance * fabs(along) < SHEET_HEIGHT * (end_radius + h->radius));
+}
+
+/* belongs_to_end in lanes, to the same answers. `turned`: turned_lanes of the end. */
+static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float steepness, lanes_f distance,
+                                   lanes_i turned, const BlockHits* h) {
+  const lanes_f own_cosine = fma(h->nx, (lanes_f)(end_normal.x),
+                                 fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
+  const lanes_f cosine = select(own_cosine, -own_cosine, turned);
   /* COINCIDENT in lanes */
   const lanes_f coincident = clamp(0.01f * (end_radius + h->radius), ROUNDING_OF_HITS, MOST_COINCIDENT);
   return ((steepness * distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
@@ -17,8 +30,11 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float st
 #ifndef HAS_SPECULAR
 /* belongs_to_origin in lanes. */
 static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
-  const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
-  return lanes_of_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), h->t, h) &
+  const lanes_i turned = turned_lanes(ends.origin_normal, ends.origin_radius, direction, h->t, h);
+  const lanes_f own_along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
+  const lanes_f along = select(own_along, -own_along, turned);
+  return lanes_of_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), h->t, turned,
+                      h) &
          ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
 }
 #define LANES_OF_ORIGIN(h, met) lanes_of_origin(ends, ray.direction, h)

@@ -1,6 +1,6 @@
 /* Probes of the lights that are infinitely far, for tests. */
 #include "lights/sky_map.cl"
-#include "lights/sun_disc.cl"
+#include "lights/sun.cl"
 
 #define OFFSET(type, field) ((uint)(size_t) & (((__private type*)0)->field))
 
@@ -11,9 +11,6 @@ __kernel void probe_sky_layout(__global uint* sizes) {
   sizes[2] = OFFSET(SkyMap, up);
   sizes[3] = sizeof(SkyRow);
   sizes[4] = sizeof(SkyTexel);
-  sizes[5] = sizeof(SunDisc);
-  sizes[6] = OFFSET(SunDisc, radiance);
-  sizes[7] = OFFSET(SunDisc, solid_angle);
 }
 
 /* drawn[3 i] = (direction drawn by u[i], 0), drawn[3 i + 1] = texel that was drawn, drawn[3 i + 2] = texel in that direction. */
@@ -40,13 +37,17 @@ __kernel void probe_sky_towards(__constant SkyMap* map, const __global SkyRow* r
   found[i] = sky_map_towards(sky, directions[i].xyz);
 }
 
-/* drawn[3 i] = (direction drawn by u[i].xy, 0), drawn[3 i + 1] = what was drawn there, drawn[3 i + 2] = what is there. */
-__kernel void probe_sun_disc(__constant SunDisc* sun, const __global float4* u, __global float4* drawn, uint count) {
+/* drawn[3 i] = (direction drawn by u[i].xy, 0); its density and what the strength is multiplied by: drawn[3 i + 1] as drawn,
+ * drawn[3 i + 2] as found in that direction. Where it was drawn the factor is radiance over density. */
+__kernel void probe_sun(const __global DeltaLight* sun, const __global float4* u, __global float4* drawn, uint count) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;
   float3 direction;
-  drawn[3u * i + 1u] = sun_disc_sample(*sun, u[i].xy, &direction);
+  float distance, pdf;
+  const float factor = sun_sample(sun, (float3)(0.0f), u[i].xy, &direction, &distance, &pdf);
   drawn[3u * i] = (float4)(direction, 0.0f);
-  drawn[3u * i + 2u] = sun_disc_towards(*sun, direction);
+  drawn[3u * i + 1u] = (float4)(factor, 0.0f, 0.0f, pdf);
+  const float radiance = sun_towards(sun, direction, &pdf);
+  drawn[3u * i + 2u] = (float4)(radiance, 0.0f, 0.0f, pdf);
 }

@@ -147,9 +147,9 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
-      const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
+      const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
-      const float t = meet(ray.origin, ray.direction, centre, normal, &q);
+      const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
       if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.direction, ray.t_max, t, centre.w, normal))
         return true;
     })

@@ -25,14 +25,25 @@ static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 #endif
 }
 
+/* Of a sheet's two points, which a ray meets in one place, the one that faces it; any other point as it is. */
+static inline uint facing_side(POOL_PARAMS, uint splat, float3 direction) {
+  const float4 normal = pool_point_texel(POINT_TEXELS * splat + 1u);
+  const float side = SHEET_SIDE(normal.w);
+  if (side == 0.0f || !is_back(normal.xyz, direction))
+    return splat;
+  return side == SHEET_FRONT ? splat + 1u : splat - 1u;
+}
+
 /* Whether the back of the disc `centre` is a rim that sticks out. */
 static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 centre) {
   float distance;
   const Ray to_middle = rim_ray(ray, centre, &distance);
   const Hit hit = trace_closest_of(POOL_ARGS, to_middle, ends);
-  return hit.splat != NO_SPLAT && hides_rim(to_middle.direction, distance, centre.w, hit.t,
-                                            pool_point_texel(POINT_TEXELS * hit.splat),
-                                            pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz);
+  if (hit.splat == NO_SPLAT)
+    return false;
+  const uint facing = facing_side(POOL_ARGS, hit.splat, to_middle.direction);
+  return hides_rim(to_middle.direction, distance, centre.w, hit.t, pool_point_texel(POINT_TEXELS * facing),
+                   pool_point_texel(POINT_TEXELS * facing + 1u).xyz);
 }
 
 #ifdef HAS_SPECULAR
@@ -67,12 +78,15 @@ static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
 }
 #endif
 
-/* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. Adds
- * the rays traced to *rays. */
+/* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. A sheet
+ * has no backs. Adds the rays traced to *rays. */
 static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float* rays) {
   Ray rest = ray;
   for (int k = 0; k < MAX_RIMS; ++k) {
-    if (hit.splat == NO_SPLAT || !is_back(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction))
+    if (hit.splat == NO_SPLAT)
+      break;
+    const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
+    if (!is_back(normal.xyz, ray.direction) || is_sheet(normal.w))
       break;
 #ifdef HAS_SPECULAR
     /* From inside glass its backs are what there is to see. */
@@ -99,9 +113,10 @@ static inline bool blended_surface(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hi
 #ifdef HAS_SPECULAR
   hit = glass_first(POOL_ARGS, ray, ends, hit);
 #endif
-  const Hit first = visible_hit(POOL_ARGS, ray, ends, hit, rays);
+  Hit first = visible_hit(POOL_ARGS, ray, ends, hit, rays);
   if (first.splat == NO_SPLAT)
     return false;
+  first.splat = facing_side(POOL_ARGS, first.splat, ray.direction);
   Blend blend;
   blend_begin(POOL_ARGS, &blend, ray, first.splat, pool_point_texel(POINT_TEXELS * first.splat),
               pool_point_texel(POINT_TEXELS * first.splat + 1u), pool_point_texel(POINT_TEXELS * first.splat + 2u).xyz);

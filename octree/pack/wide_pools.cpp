@@ -127,6 +127,7 @@ private:
       std::fill_n(block, WIDE_BLOCK_WORDS(lanes), 0.0f);
       const std::uint32_t first = leaf.range.first + b * lanes, past = leaf.range.first + leaf.range.count;
       std::memcpy(block + WIDE_FIRST(lanes), &first, sizeof first);
+      pg_uint sheets = 0;
       for (unsigned lane = 0; lane < lanes; ++lane) {
         if (first + lane >= past) { // nothing is nearer to a centre than -1
           block[WIDE_RADIUS(lanes) + lane] = -1.0f;
@@ -139,8 +140,10 @@ private:
           block[WIDE_NORMAL(lanes, a) + lane] = splat.normal[a];
         }
         block[WIDE_RADIUS(lanes) + lane] = splat.radius;
+        if (is_sheet(splat)) sheets |= 1u << lane;
         box.add(splat);
       }
+      std::memcpy(block + WIDE_SHEETS(lanes), &sheets, sizeof sheets);
     }
     set_box(pools_.nodes[leaf.node], leaf.child, box);
   }
@@ -233,10 +236,14 @@ private:
       const float* block = &pools_.blocks[b * WIDE_BLOCK_WORDS(lanes)];
       std::uint32_t index;
       std::memcpy(&index, block + WIDE_FIRST(lanes), sizeof index);
+      pg_uint sheets;
+      std::memcpy(&sheets, block + WIDE_SHEETS(lanes), sizeof sheets);
       for (unsigned lane = 0; lane < lanes; ++lane) {
         if (block[WIDE_RADIUS(lanes) + lane] < 0.0f) continue;
         if (index + lane != next_point_ || next_point_ >= pools_.points.size())
           fail("block " + std::to_string(b) + " does not follow the points along the curve");
+        if ((sheets >> lane & 1u) != (is_sheet(pools_.points[next_point_]) ? 1u : 0u))
+          fail("block " + std::to_string(b) + " does not know which of its splats are sheets");
         check_splat(pools_.points[next_point_++], block, lane, box);
       }
     }

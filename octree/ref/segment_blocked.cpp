@@ -16,7 +16,11 @@ Vector vector_of(const float v[3]) {
 }
 
 /// Whether a hit at distance t from a segment's end belongs to the surface there.
-bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& direction, double t, double cosine) {
+bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& direction, double t) {
+  double cosine = vector_of(hit.normal).dot(vector_of(end.normal));
+  const double height = t * std::abs(vector_of(hit.normal).dot(direction)); // of the end above the disc's plane
+  if (is_sheet(hit) && height < SHEET_HEIGHT * (static_cast<double>(end.radius) + hit.radius))
+    cosine = std::abs(cosine); // the side that faces as the end does speaks for both
   const double across = std::abs(vector_of(end.normal).dot(direction));
   const double steepness = std::max(1.0, SELF_HIT_REACH / SELF_HIT_HEIGHT * across);
   const double reach = SELF_HIT_REACH * (static_cast<double>(end.radius) + hit.radius);
@@ -36,9 +40,7 @@ bool segment_blocked(View<Splat> splats, const Splat& from, const Splat& to) {
     const double t = normal.dot(offset) / normal.dot(direction);
     if (!(t > -margin && t < length + margin)) continue;
     if ((t * direction - offset).squaredNorm() > static_cast<double>(s.radius) * s.radius) continue;
-    if (!belongs_to_end(from, s, direction, t, normal.dot(vector_of(from.normal))) &&
-        !belongs_to_end(to, s, direction, length - t, normal.dot(vector_of(to.normal))))
-      return true;
+    if (!belongs_to_end(from, s, direction, t) && !belongs_to_end(to, s, direction, length - t)) return true;
   }
   return false;
 }

@@ -271,6 +271,49 @@ Cluster empty_cluster() {
   return c;
 }
 
+/// Appends the nodes of `part` but its root, whose place among `nodes` is `root`; its points begin at `first_point`.
+void append_below(const ClusterTree& part, std::uint32_t root, std::uint32_t first_point, std::vector<Cluster>& nodes) {
+  const auto shift = static_cast<std::uint32_t>(nodes.size()) - 1; // of all but the root
+  const auto place = [&](std::uint32_t node) { return node == 0 ? root : node + shift; };
+  for (std::uint32_t k = 0; k < part.nodes.size(); ++k) {
+    Cluster c = part.nodes[k];
+    c.first_point += first_point;
+    if (c.child_count > 0) c.first_child = place(c.first_child);
+    c.parent = k == 0 ? 0 : place(c.parent);
+    ++c.level;
+    if (k == 0)
+      nodes[root] = c;
+    else
+      nodes.push_back(c);
+  }
+}
+
+/// A root over two trees, whose points `input[0]` and `input[1]` are places in `splats`.
+ClusterTree joined(View<Splat> splats, const ClusterTree (&parts)[2], const std::vector<std::uint32_t> (&input)[2]) {
+  ClusterTree tree;
+  tree.nodes.resize(3);
+  std::uint32_t first_point = 0;
+  Moments moments;
+  for (std::uint32_t p = 0; p < 2; ++p) {
+    const auto shift = static_cast<std::uint32_t>(tree.nodes.size()) - 1;
+    append_below(parts[p], 1 + p, first_point, tree.nodes);
+    for (std::size_t k = 0; k < parts[p].points.size(); ++k) {
+      tree.order.push_back(input[p][parts[p].order[k]]);
+      tree.points.push_back(parts[p].points[k]);
+      tree.leaf_of.push_back(parts[p].leaf_of[k] == 0 ? 1 + p : parts[p].leaf_of[k] + shift);
+      moments.add(parts[p].points[k]);
+    }
+    first_point += static_cast<std::uint32_t>(parts[p].points.size());
+  }
+  Cluster& root = tree.nodes[0];
+  root.count = static_cast<std::uint32_t>(splats.size);
+  root.first_child = 1;
+  root.child_count = 2;
+  set_means(root, moments);
+  set_bounds(root, extent_of(root, tree.points.data(), 0, splats.size));
+  return tree;
+}
+
 } // namespace
 
 ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options) {
@@ -281,7 +324,21 @@ ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options) {
     tree.nodes.push_back(empty_cluster());
     return tree;
   }
-  return Clusters(splats, options).take();
+  // The two sides of sheets lie in one place: clusters of both would face nothing, however small.
+  std::vector<std::uint32_t> input[2]; // all but backs of sheets, and these
+  for (std::uint32_t i = 0; i < splats.size; ++i)
+    if (is_back_of_sheet(splats[i])) input[1].push_back(i);
+  if (input[1].empty() || input[1].size() == splats.size) return Clusters(splats, options).take();
+  ClusterTree parts[2];
+  for (std::uint32_t i = 0; i < splats.size; ++i)
+    if (!is_back_of_sheet(splats[i])) input[0].push_back(i);
+  for (std::size_t p = 0; p < 2; ++p) {
+    std::vector<Splat> of_part;
+    for (const std::uint32_t i : input[p])
+      of_part.push_back(splats[i]);
+    parts[p] = Clusters(of_part, options).take();
+  }
+  return joined(splats, parts, input);
 }
 
 } // namespace pointgi

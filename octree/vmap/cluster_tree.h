@@ -37,7 +37,8 @@ struct ClusterOptions {
   float planar_cone = 0.6f; ///< a cell of more than a few points whose normals spread wider is divided, radians
 };
 
-/// Builds the tree over the splats that take part in diffuse exchange. Deterministic for any number of threads.
+/// Builds the tree over the splats that take part in diffuse exchange. Backs of sheets have a tree of their own beside
+/// the others', below one root. Deterministic for any number of threads.
 /// Throws std::invalid_argument on options out of range.
 ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options);
 

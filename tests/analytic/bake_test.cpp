@@ -1,10 +1,7 @@
 /// The radiosity that bake writes against what is known (truths.md §1).
-#include "host/app/commands.h"
 #include "host/image/srgb.h"
-#include "tests/support/temporary_folder.h"
-#include <Eigen/Core>
+#include "tests/support/bake.h"
 #include <catch2/catch.hpp>
-#include <cstring>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -12,35 +9,6 @@ using namespace pointgi::test;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-/// One point of the file, as bytes lie there.
-struct LitPoint {
-  Eigen::Vector3d position;
-  unsigned char colour[3];
-  float radiosity[3];
-};
-
-std::vector<LitPoint> bake(const std::string& scene, const std::vector<std::string>& set = {},
-                           const std::string& quality = "normal") {
-  const TemporaryFolder folder;
-  BakeOptions options;
-  options.input = folder.write("scene.toml", scene);
-  options.output = folder.file("lit.ply");
-  options.overrides = set;
-  options.quality = quality;
-  options.quiet = true;
-  if (run_bake(options) != ExitCode::done) throw std::runtime_error("the cloud was not finished");
-  const std::string text = contents(options.output);
-  constexpr std::size_t size = 55; // double position, float normal, bytes of colour, float radius and radiosity
-  std::vector<LitPoint> points;
-  for (std::size_t at = text.find("end_header\n") + 11; at + size <= text.size(); at += size) {
-    LitPoint& p = points.emplace_back();
-    std::memcpy(p.position.data(), &text[at], 24);
-    std::memcpy(p.colour, &text[at + 36], 3);
-    std::memcpy(p.radiosity, &text[at + 43], 12);
-  }
-  return points;
-}
 
 /// The inside of a sphere of radius 1 and albedo 0.5 that shines, moved far away.
 std::string furnace(double x) {

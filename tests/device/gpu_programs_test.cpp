@@ -92,24 +92,32 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
   for (const ProgramUse& use : all_programs())
     if (use.gpu) checked.insert(use.program.file + "\n" + use.program.options);
   for (const TraversalForm form : {TraversalForm::step, TraversalForm::wide})
-    for (unsigned bits = 0; bits < 256; ++bits)
+    for (unsigned bits = 0; bits < 512; ++bits)
       for (const unsigned k : {0u, 50u, 400u, 1024u}) {
         const auto bit = [&](unsigned i) { return (bits >> i & 1u) != 0; };
         // What host/render composes: without shadow rays only what shines by itself, and no photons without specular.
-        SceneFeatures f{bit(0) && bit(4), bit(1), bit(2) && bit(4), bit(3), bit(4), bit(5), bit(6), bit(7)};
+        SceneFeatures f{(bit(0) && bit(4) ? 1u << LIGHT_POINT : 0u) | (bit(0) && bit(8) ? 1u << LIGHT_SUN : 0u), bit(1),
+                        bit(2) && bit(4), bit(3), bit(4)};
+        f.materials = (bit(5) ? 1u << MATERIAL_MIRROR : 0u) | (bit(6) ? 1u << MATERIAL_GLASS : 0u) |
+                      (bit(7) ? 1u << MATERIAL_PHONG : 0u);
+        f.material_flags = (f.materials != 0 ? MATERIAL_SPECULAR : 0u) | (bit(6) ? MATERIAL_TRANSMITS : 0u) |
+                           (bit(7) ? MATERIAL_HAS_LOBE : 0u);
         f.gather_k = k;
-        if (!f.specular && (f.glass || f.phong || k > 0)) continue;
+        f.sky_map = bit(8); // seen without shadow rays, too
+        if (f.sky_map && f.shadow_rays && !f.environment) continue;
+        if (!f.specular() && k > 0) continue;
         if (!f.shadow_rays && !f.radiosity) continue;
-        if (k > 0 && !f.delta_lights && !f.emitters && !f.environment && !f.radiosity) continue; // light brings photons
+        if (k > 0 && f.lights == 0 && !f.emitters && !f.environment && !f.radiosity) continue; // light brings photons
         const SceneFeatures given = features_on(gpu, f);
         const TraversalVariant v = plain_variant(form);
         CAPTURE(bits, k);
         CHECK(checked.count(shade_program(v, given).file + "\n" + shade_program(v, given).options) == 1);
-        CHECK(given.delta_lights >= f.delta_lights);
+        CHECK((given.lights & f.lights) == f.lights);
         CHECK(given.emitters >= f.emitters);
         CHECK(given.environment >= f.environment);
-        CHECK(given.glass >= f.glass);
-        CHECK(given.phong >= f.phong);
+        CHECK((given.materials & f.materials) == f.materials);
+        CHECK((given.material_flags & f.material_flags) == f.material_flags);
+        CHECK(given.sky_map == f.sky_map);
         CHECK(given.radiosity == f.radiosity);
         CHECK(given.shadow_rays == f.shadow_rays);
         CHECK(shade_program(v, features_on(cpu, f)).options == shade_program(v, f).options);

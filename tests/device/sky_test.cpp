@@ -64,12 +64,12 @@ std::vector<Drawn> draw_from_map(const OnDevice& map, const std::vector<cl_float
   return as_drawn(device.download(out, 3 * numbers.size()));
 }
 
-std::vector<Drawn> draw_from_sun(const SunDisc& sun, const std::vector<cl_float4>& numbers) {
+std::vector<Drawn> draw_from_sun(const DeltaLight& sun, const std::vector<cl_float4>& numbers) {
   Session& device = session();
-  const auto disc = device.upload(std::vector<SunDisc>{sun});
+  const auto disc = device.upload(std::vector<DeltaLight>{sun});
   const auto u = device.upload(numbers);
   const auto out = device.allocate<cl_float4>(3 * numbers.size());
-  cl::Kernel kernel = device.kernel("test/sky_probe.cl", "", "probe_sun_disc");
+  cl::Kernel kernel = device.kernel("test/sky_probe.cl", "", "probe_sun");
   device.launch(kernel, LaunchShape::line(numbers.size()), disc, u, out, static_cast<cl_uint>(numbers.size()));
   return as_drawn(device.download(out, 3 * numbers.size()));
 }
@@ -82,25 +82,20 @@ bool same(const cl_float4& a, const SkyTexel& b) {
   return a.s[0] == b.radiance[0] && a.s[1] == b.radiance[1] && a.s[2] == b.radiance[2] && a.s[3] == b.density;
 }
 
-SunDisc disc_of(const Vector3d& towards, double radius_deg) {
-  SunDisc sun{};
+DeltaLight sun_of(const Vector3d& towards, double radius_deg) {
+  DeltaLight sun{};
   for (int k = 0; k < 3; ++k)
-    sun.towards[k] = static_cast<float>(towards[k]);
+    sun.vector[k] = static_cast<float>(towards[k]);
   const double radius = radius_deg * pi / 180.0;
   sun.sine2 = static_cast<float>(std::pow(std::sin(radius), 2));
-  sun.radiance[0] = 3.0f;
-  sun.radiance[1] = 2.0f;
-  sun.radiance[2] = 1.0f;
-  sun.solid_angle = static_cast<float>(4.0 * pi * std::pow(std::sin(0.5 * radius), 2));
   return sun;
 }
 
 } // namespace
 
 TEST_CASE("device and host lay the structs of the sky out alike") {
-  const std::vector<std::size_t> host = {
-      sizeof(SkyMap),   offsetof(SkyMap, forward), offsetof(SkyMap, up),        sizeof(SkyRow),
-      sizeof(SkyTexel), sizeof(SunDisc),           offsetof(SunDisc, radiance), offsetof(SunDisc, solid_angle)};
+  const std::vector<std::size_t> host = {sizeof(SkyMap), offsetof(SkyMap, forward), offsetof(SkyMap, up),
+                                         sizeof(SkyRow), sizeof(SkyTexel)};
   Session& device = session();
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("test/sky_probe.cl", "", "probe_sky_layout");
@@ -194,7 +189,7 @@ TEST_CASE("directions that the device draws from a map are distributed as their 
 TEST_CASE("directions drawn from the sun's disc fill it evenly") {
   const double radius_deg = GENERATE(0.265, 0.01, 10.0);
   const Vector3d towards = GENERATE(Vector3d(0.0, 0.0, 1.0), Vector3d(0.0, 0.0, -1.0), Vector3d(0.36, -0.48, 0.8));
-  const SunDisc sun = disc_of(towards, radius_deg);
+  const DeltaLight sun = sun_of(towards, radius_deg);
   const std::vector<Drawn> drawn = draw_from_sun(sun, random_numbers(100'000, 4));
   constexpr int rings = 10, sectors = 12;
   std::vector<double> counts(rings * sectors);
@@ -205,7 +200,12 @@ TEST_CASE("directions drawn from the sun's disc fill it evenly") {
     // By the chord, whose square is twice 1 - cosine.
     const double ring = 0.5 * (d.direction - towards).squaredNorm() / height * rings;
     outside += d.found.s[3] == 0.0f;
-    REQUIRE(d.sampled.s[0] == 3.0f);
+    // Radiance over density, the radiance being 1 over the disc's integral of the cosine.
+    REQUIRE(static_cast<double>(d.sampled.s[0]) ==
+            Approx(2.0 * height / std::pow(std::sin(radius_deg * pi / 180.0), 2)).epsilon(1e-5));
+    if (d.found.s[3] > 0.0f)
+      REQUIRE(static_cast<double>(d.found.s[0]) ==
+              Approx(static_cast<double>(d.sampled.s[0]) * static_cast<double>(d.sampled.s[3])).epsilon(1e-5));
     REQUIRE(static_cast<double>(d.sampled.s[3]) == Approx(1.0 / (2.0 * pi * height)).epsilon(1e-5));
     const double sector = (std::atan2(d.direction.dot(b), d.direction.dot(a)) / (2.0 * pi) + 0.5) * sectors;
     counts[static_cast<std::size_t>(std::min(static_cast<int>(ring), rings - 1) * sectors +

@@ -192,7 +192,7 @@ TEST_CASE("any-hit says what closest-hit says, and blending agrees between the f
 }
 
 TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan says") {
-  const auto splats = mixed_splats();
+  const auto splats = GENERATE(mixed_splats(), sheet_splats(mixed_splats()));
   auto rays = hard_rays(splats, 100'000, 51);
   std::vector<cl_float4> surfaces(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) { // off the middle of a disc, or of a place near it

@@ -63,7 +63,8 @@ struct TracedRoom {
 } // namespace
 
 TEST_CASE("segments are blocked as a linear scan in double precision says, in every variant") {
-  const auto splats = GENERATE(room_splats(400), mixed_splats());
+  const auto splats =
+      GENERATE(room_splats(400), mixed_splats(), sheet_splats(room_splats(200)), sheet_splats(mixed_splats()));
   const auto segments = random_segments(splats.size(), 30'011); // no whole number of groups
   const auto truth = LinearScan(splats, splats).blocked(segments);
   const auto blocked = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
@@ -118,6 +119,45 @@ TEST_CASE("a board that hangs before a wall hides it, from one and a half radii 
       const std::uint8_t hidden = gap > 1.5f * 0.012f ? 1 : 0;
       CHECK(ask_device(splats, points, plain_variant(form), segments) ==
             std::vector<std::uint8_t>{hidden, hidden, 0}); // the board itself is in the light
+    }
+}
+
+TEST_CASE("a sheet of two sides blocks as one disc does, but for its own surface, and what lies before it close by") {
+  const float radius = 0.012f;
+  const auto sheet = [&](float z, float bend) {
+    std::vector<Splat> splats;
+    for (int i = -12; i <= 12; ++i)
+      for (int j = -12; j <= 12; ++j) { // a cylinder of radius 1 / bend, whose axis runs along y
+        const float x = 0.015f * static_cast<float>(i), y = 0.015f * static_cast<float>(j);
+        splats.push_back(make_splat(0.5f + x, 0.5f + y, z + 0.5f * bend * x * x, -bend * x, 0.0f, 1.0f, radius));
+      }
+    return sheet_splats(splats);
+  };
+  const Splat above = make_splat(0.55f, 0.45f, 0.9f, 0, 0, -1, 0.01f),
+              below = make_splat(0.55f, 0.45f, 0.1f, 0, 0, 1, 0.01f);
+  const Splat aside = make_splat(0.9f, 0.5f, 0.36f, -1, 0, 0, 0.01f); // grazes what lies at 0.3
+  const std::vector<Splat> points{make_splat(0.5f, 0.5f, 0.3f, 0, 0, 1, radius),
+                                  make_splat(0.5f, 0.5f, 0.3f, 0, 0, -1, radius), above, below, aside};
+  // Front and back to what they face and to what they do not, and along a surface that falls away from its ends.
+  const std::vector<Segment> segments{{0, 2}, {2, 0}, {1, 3}, {3, 1}, {0, 4}, {4, 0}, {2, 3}};
+  for (const TraversalForm form : traversal_forms())
+    for (const float bend : {0.0f, -4.0f}) { // flat, and a cylinder whose radius is 21 of the discs'
+      CAPTURE(bend);
+      auto splats = sheet(0.3f, bend);
+      CHECK(ask_device(splats, points, plain_variant(form), segments) ==
+            std::vector<std::uint8_t>{0, 0, 0, 0, 0, 0, 1});
+      CHECK(LinearScan(points, splats).blocked(segments) == std::vector<std::uint8_t>{0, 0, 0, 0, 0, 0, 1});
+      for (const float gap :
+           {1.0f, 1.4f, 4.0f}) { // another sheet above, so many radii off: the lower one is in the dark
+        CAPTURE(gap);
+        auto both = splats;
+        const auto other = sheet(0.3f + gap * radius, bend);
+        both.insert(both.end(), other.begin(), other.end());
+        const std::vector<std::uint8_t> hidden{1, 1, 0, 0};
+        const auto found = ask_device(both, points, plain_variant(form), {segments.data(), 4});
+        CHECK(found == hidden);
+        CHECK(LinearScan(points, both).blocked({segments.data(), 4}) == hidden);
+      }
     }
 }
 

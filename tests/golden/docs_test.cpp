@@ -76,6 +76,8 @@ void make_stand_in(const TemporaryFolder& folder, const std::string& name) {
   const std::string ending = fs::path(name).extension();
   if (ending == ".ply") folder.write(name, ball_of_points());
   if (ending == ".toml") folder.write(name, mirror_scene());
+  if (ending == ".hdr")
+    folder.write(name, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x80\x80\x40\x80\x81");
   if (ending == ".obj") folder.write(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
 }
 
@@ -206,7 +208,7 @@ TEST_CASE("every scene of the documentation loads") {
       CHECK((block.kind == "toml" || block.kind == "toml fragment"));
       const std::string text = joined(block.lines, "\n");
       const TemporaryFolder folder;
-      for (const std::string& name : all_matches(text, "file = \"([^\"]+)\""))
+      for (const std::string& name : all_matches(text, "\\b(?:file|map) = \"([^\"]+)\""))
         make_stand_in(folder, name);
       CHECK_NOTHROW(load_scene(folder.write("scene.toml", block.kind == "toml" ? text : completed(text))));
       loaded += 1;
@@ -221,7 +223,7 @@ TEST_CASE("the scenes of the gallery load") {
     INFO(entry.path().string());
     const TemporaryFolder folder;
     const std::string text = contents(entry.path());
-    for (const std::string& name : all_matches(text, "file = \"([^\"]+)\""))
+    for (const std::string& name : all_matches(text, "\\b(?:file|map) = \"([^\"]+)\""))
       make_stand_in(folder, name);
     CHECK_NOTHROW(load_scene(folder.write("scene.toml", text)));
   }

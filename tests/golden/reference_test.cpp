@@ -63,7 +63,7 @@ TEST_CASE("the reference names every key of a scene file") {
     repeated.push_back({std::string("material.") + material, head});
   for (const char* type : {"quad", "disc", "sphere", "box", "cylinder"})
     repeated.push_back({"shape.0", head + "[[shape]]\ntype = \"" + type + "\"\n"});
-  for (const char* type : {"point", "directional"})
+  for (const char* type : {"point", "directional", "sun"})
     repeated.push_back({"light.0", head + "[[light]]\ntype = \"" + type + "\"\n"});
   for (const Repeated& r : repeated) {
     const std::vector<std::string> keys = keys_of(folder.write("s.toml", r.before), r.section);

@@ -66,7 +66,22 @@ inline std::vector<Splat> plane_splats(int per_side) {
   return splats;
 }
 
-/// All of the above in one: what a traversal is tested on.
+/// Both sides of each splat, as those of a two-sided material.
+inline std::vector<Splat> sheet_splats(const std::vector<Splat>& splats) {
+  std::vector<Splat> sides;
+  for (const Splat& s : splats) {
+    Splat front = s, back = s;
+    front.material += SHEET_FRONT;
+    back.material += SHEET_BACK;
+    for (float& n : back.normal)
+      n = -n;
+    sides.push_back(front);
+    sides.push_back(back);
+  }
+  return sides;
+}
+
+/// All of the above but sheets in one: what a traversal is tested on.
 inline std::vector<Splat> mixed_splats() {
   std::vector<Splat> all = random_splats(600, 3);
   for (const auto& part : {sphere_splats(500), plane_splats(12)})

@@ -83,6 +83,17 @@ private:
   std::size_t samples_ = 0;
 };
 
+/// The image as an EXR picture, which keeps its floats.
+inline void write_exr(const std::string& path, const RgbImage& image) {
+  const std::vector<ChannelName> channels = {{"R", false}, {"G", false}, {"B", false}};
+  PictureWriter writer(path, image.width, image.height, {0, image.width, 0, image.height}, channels, {}, 0.0);
+  Band band{0, image.height, image.width, std::vector<std::vector<float>>(3)};
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    band.values[i % 3].push_back(image.rgb[i]);
+  writer.write(band);
+  writer.finish(0.0);
+}
+
 /// The radiances as an EXR picture, a crop of one of `full_width` columns.
 inline void write_exr(const std::string& path, int width, int height, int full_width,
                       const std::vector<SkyTexel>& texels) {

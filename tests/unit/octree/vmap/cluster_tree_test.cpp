@@ -163,6 +163,31 @@ TEST_CASE("leaves are small and near-planar, or have few points, or lie at the d
   if (options.leaf_capacity >= 32) CHECK(large_leaves > 0); // planes end in leaves of their capacity
 }
 
+TEST_CASE("the two sides of a sheet have clusters of their own, as near-planar as those of one side") {
+  const auto one_sided = plane_splats(20);
+  std::vector<Splat> splats = sheet_splats(one_sided);
+  splats.push_back(make_splat(0.8f, 0.8f, 0.8f, 0, 0, 1, 0.01f)); // of no sheet
+  const ClusterTree tree = build_clusters(splats, {}), single = build_clusters(one_sided, {});
+  check_structure(tree, splats.size());
+  for (std::size_t k = 0; k < splats.size(); ++k)
+    REQUIRE(std::memcmp(&tree.points[k], &splats[tree.order[k]], sizeof(Splat)) == 0);
+  REQUIRE(tree.nodes[0].child_count == 2);
+  const Cluster& backs = tree.nodes[2];
+  CHECK(backs.count == one_sided.size());
+  for (std::uint32_t k = 0; k < splats.size(); ++k)
+    REQUIRE(is_back_of_sheet(tree.points[k]) == (k >= backs.first_point));
+  const auto leaves = [](const ClusterTree& of) {
+    return std::count_if(of.nodes.begin(), of.nodes.end(), [](const Cluster& c) { return c.first_child == 0; });
+  };
+  CHECK(leaves(tree) <= 2 * leaves(single) + 1);
+  const Twin root = twin_of(tree, tree.nodes[0]);
+  for (int a = 0; a < 3; ++a) {
+    CHECK(tree.nodes[0].low[a] == static_cast<float>(root.low[a]));
+    check_near(tree.nodes[0].centre[a], root.centre[a], 2e-7); // float, as above
+  }
+  check_near(tree.nodes[0].radius, root.radius, 3e-7);
+}
+
 TEST_CASE("the clusters do not depend on the number of threads") {
   const auto splats = sphere_splats(50'000);
   const int threads = omp_get_max_threads();
