@@ -103,6 +103,13 @@ __kernel void probe_phong(const __global float4* drawn, __global float4* lobe, u
   lobe[i] = (float4)(cosine, density * phong_weight(1.0f, exponent), phong_lobe(cosine, exponent), sqrt(dot3(d, d)));
 }
 
+/* reflectance[i] = share of light that metal reflects, from in[i] = (cosine of incidence, eta, extinction, unused). */
+__kernel void probe_metal(const __global float4* in, __global float* reflectance, uint count) {
+  const uint i = get_global_id(0);
+  if (i < count)
+    reflectance[i] = fresnel_conductor(in[i].x, in[i].y, in[i].z);
+}
+
 /* media[i] = what is left of NO_MEDIUM after steps[i], eight steps from the lowest byte on: 0 nothing, m enter material m, 128 + m
  * leave it. */
 __kernel void probe_media(const __global ulong* steps, __global uint4* media, uint count) {

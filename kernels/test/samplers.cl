@@ -86,13 +86,12 @@ __kernel void probe_emitter(POOL_PARAMS, const __global Material* materials, con
 }
 
 /* A surface's samples of many lights: drawn[2 i] = (direction, distance), drawn[2 i + 1] = (irradiance, density). */
-__kernel void probe_delta_light(__constant RenderParams* params, const __global Material* materials,
-                                const __global DeltaLight* delta, const __global Emitter* emitters, float4 position,
-                                float4 normal, const __global float4* u, __global float4* drawn, uint count) {
+__kernel void probe_delta_light(LIGHT_PARAMS, float4 position, float4 normal, const __global float4* u,
+                                __global float4* drawn, uint count) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;
-  const Lights lights = {params, materials, delta, emitters};
+  const Lights lights = {LIGHT_ARGS};
   const Surface s = plain_surface(position.xyz, normal.xyz, true);
   LightSample sample;
   sample_delta_light(&s, lights, u[i], 0u, &sample);
@@ -102,15 +101,13 @@ __kernel void probe_delta_light(__constant RenderParams* params, const __global 
 
 /* A photon of each aim, its first: drawn[3 i] = its origin, drawn[3 i + 1] = its direction, drawn[3 i + 2] = its power. With
  * `looks` it looks for light from a specular splat. */
-__kernel void probe_emission(POOL_PARAMS, __constant RenderParams* params, const __global Material* materials,
-                             const __global DeltaLight* delta, const __global Emitter* emitters,
-                             const __global float4* radiance, const __global PhotonAim* aims,
+__kernel void probe_emission(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global PhotonAim* aims,
                              const __global PhotonLeaf* leaves, const __global uint* leaf_splats, uint looks,
                              __global float4* drawn, uint count) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;
-  const PhotonSource from = {{params, materials, delta, emitters}, radiance, leaves, leaf_splats};
+  const PhotonSource from = {{LIGHT_ARGS}, radiance, leaves, leaf_splats};
   const SampleId id = {(uint2)(i, 0x20000000u), 0u, params->seed, 0u};
   Emission e;
   if (looks != 0u)
@@ -142,15 +139,16 @@ __kernel void probe_stratified(uint dimension, uint vertex, uint samples, uint s
   }
 }
 
-/* drawn[i] = direction in which a surface of normal.xyz looks for the environment, and its density as sampled minus that of a
- * ray in that direction. */
-__kernel void probe_sky(__constant RenderParams* params, float4 normal, const __global float4* u, __global float4* drawn,
-                        uint count) {
+/* drawn[i] = direction in which a surface of normal.xyz looks for an even environment, and its density as sampled minus that of
+ * a ray in that direction. */
+__kernel void probe_sky(LIGHT_PARAMS, float4 normal, const __global float4* u, __global float4* drawn, uint count) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;
+  const Lights lights = {LIGHT_ARGS};
   const Surface s = plain_surface((float3)(0.5f), normal.xyz, true);
   LightSample sample;
-  sample_sky(&s, params, u[i], &sample);
-  drawn[i] = (float4)(sample.towards, sample.pdf - sky_pdf(normal.xyz, sample.towards));
+  sample_sky(&s, lights, u[i], 0u, &sample);
+  const SkyLight met = sky_light(lights, sample.towards, sky_cosine_pdf(normal.xyz, sample.towards));
+  drawn[i] = (float4)(sample.towards, sample.pdf - met.pdf);
 }

@@ -1,7 +1,6 @@
 /// Mirrors, glass and Phong surfaces in the picture and in the path tracer, against what is known of them (truths.md
 /// §1).
-#include "tests/support/number.h"
-#include "tests/support/render.h"
+#include "tests/support/scene_parts.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -10,54 +9,6 @@ using namespace pointgi::test;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-std::string grey(double value) {
-  return "[" + number(value) + ", " + number(value) + ", " + number(value) + "]";
-}
-
-std::string head(const std::string& position, const std::string& look_at, double fov, int spp,
-                 const std::string& size = "[24, 24]") {
-  return "version = 1\n[render]\nsize = " + size + "\nspp = " + std::to_string(spp) + "\n[camera]\nposition = [" +
-         position + "]\nlook_at = [" + look_at + "]\nfov_deg = " + number(fov) + "\n";
-}
-
-std::string environment(double radiance) {
-  return "[environment]\nradiance = " + grey(radiance) + "\n";
-}
-
-std::string material(const std::string& name, const std::string& type, const std::string& more = "") {
-  return "[[material]]\nname = \"" + name + "\"\ntype = \"" + type + "\"\n" + more + "\n";
-}
-
-/// Shines with that radiance and reflects nothing.
-std::string lamp(const std::string& name, double radiance) {
-  return material(name, "diffuse", "albedo = [0.0, 0.0, 0.0]\nemission = " + grey(radiance));
-}
-
-std::string quad(const std::string& corner, const std::string& u, const std::string& v, const std::string& of,
-                 double spacing) {
-  return "[[shape]]\ntype = \"quad\"\ncorner = [" + corner + "]\nedge_u = [" + u + "]\nedge_v = [" + v +
-         "]\nspacing = " + number(spacing) + "\nmaterial = \"" + of + "\"\n";
-}
-
-std::string sphere(const std::string& centre, double radius, const std::string& of, double spacing) {
-  return "[[shape]]\ntype = \"sphere\"\ncentre = [" + centre + "]\nradius = " + number(radius) +
-         "\nspacing = " + number(spacing) + "\nmaterial = \"" + of + "\"\n";
-}
-
-std::string box(const std::string& low, const std::string& high, const std::string& of, double spacing,
-                bool inward = false) {
-  return "[[shape]]\ntype = \"box\"\nmin = [" + low + "]\nmax = [" + high + "]\nspacing = " + number(spacing) +
-         "\nmaterial = \"" + of + "\"\n" + (inward ? "inward = true\n" : "");
-}
-
-Picture trace(const std::string& scene, const std::string& paths = "", int spp = 0) {
-  return render_text(scene, [&](RenderOptions& options) {
-    options.integrator = "path";
-    options.paths = paths;
-    if (spp > 0) options.spp = spp;
-  });
-}
 
 void check_sum_of_channels(const Picture& picture) {
   const auto value = [&](const std::string& name, std::size_t i) {

@@ -43,8 +43,10 @@ TEST_CASE("the reference names every key of a scene file") {
   std::string head = "version = 1\n[environment]\nradiance = [1, 1, 1]\n"
                      "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n"
                      "[[cloud]]\nfile = \"points.ply\"\nmaterial = \"phong\"\n";
-  for (const char* type : {"diffuse", "phong", "mirror", "glass"})
-    head += std::string("[[material]]\nname = \"") + type + "\"\ntype = \"" + type + "\"\n";
+  const char* const materials[] = {"diffuse", "phong", "mirror", "glass", "conductor"};
+  for (const std::string type : materials)
+    head += "[[material]]\nname = \"" + type + "\"\ntype = \"" + type + "\"\n" +
+            (type == "conductor" ? "metal = \"gold\"\n" : "");
   for (const char* section : {"render", "camera", "radiosity", "caustics", "octree", "traversal", "environment"}) {
     const std::vector<std::string> keys = keys_of(folder.write("s.toml", head), section);
     CAPTURE(section);
@@ -57,7 +59,7 @@ TEST_CASE("the reference names every key of a scene file") {
   };
   // Shapes and lights lack what they must have, but a key that nobody knows is refused first.
   std::vector<Repeated> repeated{{"cloud.0", head}};
-  for (const char* material : {"diffuse", "phong", "mirror", "glass"})
+  for (const char* material : materials)
     repeated.push_back({std::string("material.") + material, head});
   for (const char* type : {"quad", "disc", "sphere", "box", "cylinder"})
     repeated.push_back({"shape.0", head + "[[shape]]\ntype = \"" + type + "\"\n"});

@@ -1,5 +1,6 @@
 /// Samples of lights and photons that set out, against densities written here.
 #include "host/passes/build_pools.h"
+#include "host/passes/device_lights.h"
 #include "host/passes/device_pools.h"
 #include "host/scene/lighting.h"
 #include "host/scene/shares.h"
@@ -64,7 +65,7 @@ struct LightScene {
   OctreePools octree = build_pools(splats_of_lights(), plain_variant(TraversalForm::wide));
   DevicePools pools = upload_pools(session(), octree, PoolStorage::buffer);
   DeviceLighting lighting = device_lighting(scene, Frame{}, points_of(octree));
-  Buffer<Material> materials = session().upload(lighting.materials);
+  DeviceLights device = upload_lights(session(), lighting, lighting.params, false);
   Buffer<cl_float4> field = session().upload(std::vector<cl_float4>(points_of(octree).size())); ///< flat surfaces
 
   const Splat& point(const Emitter& e) const { return points_of(octree)[e.point]; }
@@ -117,10 +118,9 @@ TEST_CASE("emitting splats are sampled by their power, evenly over their discs, 
   REQUIRE(emitters.size() == 8);
   const std::vector<double> shares = lights.shares(emitters, [&](const Emitter& e) { return lights.power(e); });
   const Vector3d position(0.45, 0.2, 0.4), up(0.0, 1.0, 0.0);
-  const auto device_emitters = session().upload(emitters);
   const auto drawn = draw("probe_emitter", samples, 3, 7, lights.pools.nodes, lights.pools.leaves, lights.pools.points,
-                          lights.field, lights.materials, device_emitters, static_cast<cl_uint>(emitters.size()),
-                          float4_of(position), float4_of(up));
+                          lights.field, lights.device.materials, lights.device.emitters,
+                          static_cast<cl_uint>(emitters.size()), float4_of(position), float4_of(up));
   EvenSquares squares(shares);
   double off_pdf = 0.0, off_ray = 0.0, off_irradiance = 0.0;
   for (std::size_t i = 0; i < drawn.size(); i += 3) {
@@ -155,11 +155,8 @@ TEST_CASE("of many lights one is drawn by its strength") {
   for (double& share : shares)
     share /= total;
   const Vector3d position(0.45, 0.2, 0.4), up(0.0, 1.0, 0.0);
-  const auto params = session().upload(&lights.lighting.params, 1);
-  const auto device_delta = session().upload(delta);
-  const auto emitters = session().upload(lights.lighting.emitters);
-  const auto drawn = draw("probe_delta_light", samples, 2, 8, params, lights.materials, device_delta, emitters,
-                          float4_of(position), float4_of(up));
+  const auto drawn =
+      draw("probe_delta_light", samples, 2, 8, lights.device.arguments(), float4_of(position), float4_of(up));
   std::vector<double> counts(delta.size());
   double off_irradiance = 0.0;
   for (std::size_t i = 0; i < drawn.size(); i += 2) {
@@ -185,11 +182,10 @@ TEST_CASE("of many lights one is drawn by its strength") {
 TEST_CASE("a surface looks for the environment with the density that rays to it are weighed by") {
   const LightScene lights;
   const Vector3d normal = Vector3d(0.36, -0.48, 0.8);
-  const auto params = session().upload(&lights.lighting.params, 1);
   const PolarBins bins(normal, even_edges(1.0, 16), 12);
   std::vector<double> counts(bins.size());
   double off_density = 0.0;
-  for (const cl_float4& d : draw("probe_sky", samples, 1, 9, params, float4_of(normal))) {
+  for (const cl_float4& d : draw("probe_sky", samples, 1, 9, lights.device.arguments(), float4_of(normal))) {
     counts[bins.of(vector_of(d))] += 1.0;
     off_density = std::fmax(off_density, std::fabs(static_cast<double>(d.s[3])));
   }
@@ -223,11 +219,12 @@ std::vector<Emitted> emit(const LightScene& lights, const std::vector<Emitter>& 
   for (const Emitter& e : emitters)
     radiance.push_back({0.0f, static_cast<float>(lights.green(e)), 0.0f, 0.0f});
   Session& device = session();
+  DeviceLights sent = upload_lights(device, lights.lighting, params, false);
+  sent.emitters = device.upload(emitters);
   const auto drawn = device.allocate<cl_float4>(3 * samples);
   cl::Kernel kernel = sampler("probe_emission");
   device.launch(kernel, LaunchShape::line(samples), lights.pools.nodes, lights.pools.leaves, lights.pools.points,
-                lights.field, device.upload(&params, 1), lights.materials, device.upload(lights.lighting.delta),
-                device.upload(emitters), device.upload(radiance), device.upload(aims),
+                lights.field, sent.arguments(), device.upload(radiance), device.upload(aims),
                 device.upload(std::vector<PhotonLeaf>{leaf}), device.upload(std::vector<cl_uint>{0}),
                 static_cast<cl_uint>(looks), drawn, static_cast<cl_uint>(samples));
   const auto values = device.download(drawn, 3 * samples);
