@@ -19,9 +19,9 @@ struct StageProgress {
 struct RunControl {
   /// Whether to end the work; asked between the stages, before every launch of the device and within the host's long
   /// loops. Work that is ended throws Error(interrupted), "interrupted in the stage ...".
-  std::function<bool()> stop;
-  std::function<void(const StageProgress&)> progress;
-  std::function<void(LogLevel, const std::string& text)> log; ///< a line without its line end
+  std::function<bool()> stop = {};
+  std::function<void(const StageProgress&)> progress = {};
+  std::function<void(LogLevel, const std::string& text)> log = {}; ///< a line without its line end
 };
 
 } // namespace pointgi

@@ -50,12 +50,22 @@ PixelWindow window_of(const FilmOptions& options, const RenderSettings& render) 
   return {x0, x1, y0, y1};
 }
 
-/// What the picture depends on: splats, lights, camera and samples, as the device reads them.
-std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting) {
+/// What else the light depends on, as text: the integrator and its paths, the exchange between surfaces, photons.
+std::string settings_text(const pointgi::Scene& scene, const std::string& integrator, const std::string& paths) {
+  const RadiositySettings& r = scene.radiosity;
+  const CausticSettings& c = scene.caustics;
+  return fmt::format("{} {}; {} {} {} {} {:a} {:a} {} {} {}; {} {} {} {:a} {} {}", integrator, paths, r.method, r.order,
+                     r.vmap_samples, r.point_samples, r.epsilon, r.tolerance, r.vmap, r.direct_light,
+                     r.light_samples.value_or(0), c.photons, c.gather_k, c.power, c.max_radius.value_or(0.0),
+                     c.feedback, c.indirect);
+}
+
+/// What the picture depends on: splats, lights, camera and samples, as the device reads them, and `settings`.
+std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting, const std::string& settings) {
   const auto bytes = [](const auto& v) {
     return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
   };
-  std::uint64_t hash = fnv1a(bytes(points_of(pools)));
+  std::uint64_t hash = fnv1a(bytes(points_of(pools)), fnv1a(settings));
   hash = fnv1a(bytes(lighting.delta), hash);
   hash = fnv1a(bytes(lighting.materials), hash);
   if (lighting.sky != nullptr) {
@@ -98,14 +108,16 @@ PictureAttributes FilmJob::attributes() const {
   const Prepared::Parts& prepared = *light_.prepared;
   const DeviceInfo& device = prepared.context->session.info();
   PictureAttributes attributes;
+  const std::string integrator = light_.options.path_tracing ? "path" : "pointgi";
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016llx",
-                static_cast<unsigned long long>(hash_of(prepared.ready.pools, lighting_)));
+                static_cast<unsigned long long>(
+                    hash_of(prepared.ready.pools, lighting_, settings_text(view_, integrator, paths_))));
   attributes.text["software"] = "pointgi " POINTGI_VERSION;
   attributes.text["pointgi/device"] = device.name + " (" + device.platform + ")";
   attributes.text["pointgi/scene_hash"] = hash;
   attributes.text["pointgi/quality"] = prepared.quality;
-  attributes.text["pointgi/integrator"] = light_.options.path_tracing ? "path" : "pointgi";
+  attributes.text["pointgi/integrator"] = integrator;
   if (!paths_.empty()) attributes.text["pointgi/paths"] = paths_;
   attributes.number["samplesPerPixel"] = view_.render.spp;
   attributes.world_to_camera = world_to_camera(view_);

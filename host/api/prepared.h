@@ -12,8 +12,8 @@ namespace pointgi::api {
 struct Camera {
   std::array<double, 3> position{};
   std::array<double, 3> look_at{};
-  double fov_deg = 40.0;                   ///< vertical, above 0 and below 180
-  std::optional<std::array<double, 3>> up; ///< absent: the scene's axis
+  double fov_deg = 40.0;                        ///< vertical, above 0 and below 180
+  std::optional<std::array<double, 3>> up = {}; ///< absent: the scene's axis
 };
 
 /// Clouds loaded and completed, shapes sampled, all of them in an octree on the device.

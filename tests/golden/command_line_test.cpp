@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <random>
+#include <set>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -60,6 +61,29 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
     if (event["ph"] == "X") CHECK((event["ts"] >= 0.0 && event["ts"] <= stages_end));
   CHECK_THAT(stats["variant"]["source"].get<std::string>(), Contains("default of"));
   CHECK_THAT(run.err, Contains("variant: " + stats["variant"]["name"].get<std::string>()));
+}
+
+TEST_CASE("the scene's hash is another where light is computed another way") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("scene.toml", small_scene());
+  std::set<std::string> hashes;
+  const auto hash_with = [&](const std::string& more) {
+    const std::string out = folder.file("x.exr");
+    const Run run = run_program("render " + scene + " --quiet --size 8x8 --spp 1 -o " + out + " " + more);
+    CAPTURE(more, run.err);
+    REQUIRE(run.code == 0);
+    return read_exr(out).attributes.text.at("pointgi/scene_hash");
+  };
+  const std::string plain = hash_with("");
+  CHECK(hash_with("") == plain);
+  for (const char* more :
+       {"--set radiosity.method=none", "--set radiosity.order=2", "--set radiosity.epsilon=0.01",
+        "--set caustics.gather_k=20", "--integrator path", "--integrator path --paths LDE", "--quality draft"}) {
+    const std::string hash = hash_with(more);
+    CAPTURE(more);
+    CHECK(hash != plain);
+    CHECK(hashes.insert(hash).second);
+  }
 }
 
 TEST_CASE("light between surfaces is part of a picture unless the scene or the command has no need of it") {

@@ -84,6 +84,7 @@ TEST_CASE("an include against the arrows is found by file and line", "[scripts]"
       BadInclude{"host/cl/bad.h", "\"host/cloud/readers/ply.h\""},
       BadInclude{"host/image/bad.h", "\"host/scene/scene.h\""}, BadInclude{"host/image/bad.h", "<octree/build/tree.h>"},
       BadInclude{"host/passes/bad.cpp", "\"host/app/main.cpp\""}, BadInclude{"host/passes/bad.cpp", "<CL/opencl.hpp>"},
+      BadInclude{"host/stages/bad.h", "\"host/app/main.cpp\""}, BadInclude{"host/api/bad.h", "\"host/app/main.cpp\""},
       BadInclude{"host/passes/bad.cpp", "\"tests/support/scans.h\""}, BadInclude{"host/passes/bad.cpp", "\"run.h\""},
       BadInclude{"host/passes/bad.cpp", "\"../error.h\""}, BadInclude{"host/new/bad.cpp", "\"host/error.h\""});
   const Tree tree;
