@@ -172,11 +172,7 @@ private:
     return samples_.exhaustive(pair.a, pair.b, count, segments);
   }
 
-  /// Of the two sides of one sheet, whose discs lie close together, the clamps would not tell.
   bool searchable(const Pair& pair) const {
-    if (is_back_of_sheet(tree_.points[tree_.nodes[pair.a].first_point]) !=
-        is_back_of_sheet(tree_.points[tree_.nodes[pair.b].first_point]))
-      return true;
     return std::uint64_t{tree_.nodes[pair.a].count} * tree_.nodes[pair.b].count <= exhaustive_pairs;
   }
 

@@ -165,7 +165,7 @@ TEST_CASE("a closed sheet keeps light out, and in, as well as a closed surface o
   const std::string scene = "version = 1\n" + material("wall", 0.7, two_sided) + material("floor", 0.6, "") +
                             "[[shape]]\ntype = \"sphere\"\ncentre = [0.0, 0.0, 0.0]\nradius = 1.0\ninward = "
                             "true\nspacing = 0.12\nmaterial = \"wall\"\n" +
-                            quad({-3, -1.5, -3}, {0, 0, 6}, {6, 0, 0}, 0.3, "floor") +
+                            quad({-3, -1.5, -3}, {0, 0, 6}, {6, 0, 0}, 0.1, "floor") +
                             point_light(within ? Vector3d(0.2, 0.1, -0.3) : Vector3d(1.7, 0.4, 2.0), 4.0);
   const auto inside = [](const LitPoint& p) { return p.position.norm() < 1.1 && !faces_outwards(p); };
   const auto dark = [&](const LitPoint& p) { return inside(p) != within; };
