@@ -23,7 +23,8 @@ public:
   /// what was merged, warnings. Throws Error: input, device, memory, interrupted.
   Prepared(const Context& context, const Scene& scene, const RunControl& run = {});
 
-  /// Number of the points of the octree: those of all clouds and shapes, less those that were dropped or merged.
+  /// Number of the points of the octree: those of all clouds and shapes, less those that were dropped or merged;
+  /// both sides of what is two-sided, the front before the back.
   std::size_t size() const;
   /// [size x 3], world units, within 1e-7 of the scene's size; in the octree's order.
   std::vector<double> positions() const;

@@ -11,6 +11,10 @@ std::size_t divide_sheets(const Scene& scene, std::vector<Splat>& splats, std::v
   };
   const auto sheets = static_cast<std::size_t>(std::count_if(splats.begin(), splats.end(), is_two_sided));
   if (sheets == 0) return 0;
+  if (scene.materials.size() > SHEET_MATERIALS)
+    throw Error(ErrorKind::input, "two_sided: the scene has " + std::to_string(scene.materials.size()) +
+                                      " materials, and at most " + std::to_string(SHEET_MATERIALS) +
+                                      " go together with sheets; share materials between objects");
   const std::size_t points = splats.size() + sheets;
   if (points > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::memory, "two_sided: both sides of " + std::to_string(sheets) + " splats are " +

@@ -7,7 +7,8 @@ namespace pointgi {
 /// Makes each splat of a two-sided material two: the front of a sheet and, behind it in the list, its back, which
 /// differs in its normal alone (SHEET_FRONT, SHEET_BACK of shared/octree_types.h). Each side then has light of its own,
 /// and no stage of light needs to know of sheets. `id[i]` goes with splat i; both sides have it. Returns how many
-/// sheets there are. Throws Error(memory) where there would be more points than the octree counts.
+/// sheets there are. Throws Error(memory) where there would be more points than the octree counts, Error(input)
+/// on more materials than SHEET_MATERIALS.
 std::size_t divide_sheets(const Scene& scene, std::vector<Splat>& splats, std::vector<std::uint32_t>& id);
 
 } // namespace pointgi

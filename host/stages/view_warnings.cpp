@@ -19,7 +19,7 @@ std::string place_of(const LightSettings& light) {
 
 /// What may keep the light away, of the lights that the scene has: the first of each kind speaks for the others.
 std::string suspects(const Scene& scene) {
-  std::string list = "surfaces are lit, and shine, on the side of their normal only";
+  std::string list = "surfaces are lit, and shine, on the side of their normal only, unless two_sided";
   for (std::size_t i = 0; i < scene.clouds.size() + scene.shapes.size(); ++i) {
     const SceneObject object = object_of(scene, i);
     const auto is_its = [&](const MaterialSettings& m) { return m.name == object.material; };

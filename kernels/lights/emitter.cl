@@ -28,7 +28,8 @@ static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global 
 #ifdef HAS_LOBES
   sample->pdf = material->emitter_density * d2 / cosine_at_light;
 #endif
-  return share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f;
+  return share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f &&
+         !is_own_far_side(s->normal, s->radius, towards, sample->distance, centre.w, normal);
 }
 
 /* Density, per solid angle, with which sample_emitter finds the place of an emitter that a ray has met. Overlapping discs of

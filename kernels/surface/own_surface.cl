@@ -39,20 +39,38 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float ste
 
 static inline bool is_sheet(float material) { return SHEET_SIDE(material) != 0.0f; }
 
-/* The normal by which a disc that is met `distance` from an end is judged there: of a sheet's two sides, which lie in one
- * place, the one that faces as the end does speaks for both, where the end may lie on that sheet (SHEET_HEIGHT).
+/* Of a sheet's two sides, which lie in one place, the one that faces as an end does speaks for both, where the end may lie
+ * on that sheet (SHEET_HEIGHT): whether that is the other side of the disc that is met `distance` from the end.
  * normal.w: the disc's material. */
-static inline float3 normal_at_end(float3 end_normal, float end_radius, float3 direction, float distance, float radius,
-                                   float4 normal) {
-  const bool turned = is_sheet(normal.w) && dot3(normal.xyz, end_normal) < 0.0f &&
-                      distance * fabs(dot3(normal.xyz, direction)) < SHEET_HEIGHT * (end_radius + radius);
-  return turned ? -normal.xyz : normal.xyz;
+static inline bool is_turned(float3 end_normal, float end_radius, float3 direction, float distance, float radius,
+                             float4 normal) {
+  return is_sheet(normal.w) && dot3(normal.xyz, end_normal) < 0.0f &&
+         distance * fabs(dot3(normal.xyz, direction)) < SHEET_HEIGHT * (end_radius + radius);
 }
 
-/* Of a ray that carries light from surface to surface, a disc near its origin is met when the ray arrives at its front:
- * the surface is hollow there. Were it passed by, light would get out through the walls of what is closed: the inside
- * of a sphere of 25 splats across and albedo 0.9 is then 7 % too dark. Nearer than this, in units of the disc's radius, it is rounding that puts a disc before its surface. */
-#define ARRIVAL_DISTANCE 0.1f
+/* The normal by which such a disc is judged at the end. */
+static inline float3 normal_at_end(float3 end_normal, float end_radius, float3 direction, float distance, float radius,
+                                   float4 normal) {
+  return is_turned(end_normal, end_radius, direction, distance, radius, normal) ? -normal.xyz : normal.xyz;
+}
+
+/* Whether a place `distance` off on a disc is the far side of the sheet on which the end lies: discs of a bent sheet stick
+ * out of it, and would show the end the side that is turned away from it. */
+static inline bool is_own_far_side(float3 end_normal, float end_radius, float3 direction, float distance, float radius,
+                                   float4 normal) {
+  return is_turned(end_normal, end_radius, direction, distance, radius, normal) &&
+         belongs_to_end(end_normal, end_radius, steepness_at_end(end_normal, direction), distance, radius, -normal.xyz);
+}
+
+/* belongs_to_end of a disc of the pool, `away` being the ray's direction away from the end. A sheet's disc is met when that
+ * way arrives at the side that faces as the end does (ARRIVAL_DISTANCE): what lies behind it is on the other side of the
+ * sheet, which may be lit while this one is not. */
+static inline bool disc_belongs_to_end(float3 end_normal, float end_radius, float3 away, float distance, float radius,
+                                       float4 normal) {
+  const float3 n = normal_at_end(end_normal, end_radius, away, distance, radius, normal);
+  return belongs_to_end(end_normal, end_radius, steepness_at_end(end_normal, away), distance, radius, n) &&
+         !(is_sheet(normal.w) && dot3(n, away) < 0.0f && distance > ARRIVAL_DISTANCE * radius);
+}
 
 /* normal.w: the disc's material. A ray that goes off into glass passes by the discs whose fronts it meets near there, and
  * arrives at backs: all that was said of sides is turned round. What is coincident and faces the other way, the far side of
@@ -80,8 +98,6 @@ static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t,
 
 static inline bool belongs_to_ends(ShadowEnds ends, float3 direction, float t_max, float t, float radius,
                                    float4 normal) {
-  return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
-                        normal_at_end(ends.origin_normal, ends.origin_radius, direction, t, radius, normal)) ||
-         belongs_to_end(ends.target_normal, ends.target_radius, steepness_at_end(ends.target_normal, direction), t_max - t,
-                        radius, normal_at_end(ends.target_normal, ends.target_radius, direction, t_max - t, radius, normal));
+  return disc_belongs_to_end(ends.origin_normal, ends.origin_radius, direction, t, radius, normal) ||
+         disc_belongs_to_end(ends.target_normal, ends.target_radius, -direction, t_max - t, radius, normal);
 }

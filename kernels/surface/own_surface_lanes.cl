@@ -3,16 +3,17 @@
 #include "surface/disc_lanes.cl"
 #include "surface/own_surface.cl"
 
-/* Lanes whose normals normal_at_end turns round. */
+static inline lanes_i sheet_lanes(const BlockHits* h) { return (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u; }
+
+/* is_turned in lanes. */
 static inline lanes_i turned_lanes(float3 end_normal, float end_radius, float3 direction, lanes_f distance,
                                    const BlockHits* h) {
   if (h->sheets == 0u)
     return (lanes_i)(0);
-  const lanes_i sheet = (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u;
   const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
                              fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
   const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
-  return sheet & (cosine < 0.0f) & (distance * fabs(along) < SHEET_HEIGHT * (end_radius + h->radius));
+  return sheet_lanes(h) & (cosine < 0.0f) & (distance * fabs(along) < SHEET_HEIGHT * (end_radius + h->radius));
 }
 
 /* belongs_to_end in lanes, to the same answers. `turned`: turned_lanes of the end. */
@@ -25,6 +26,18 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float st
   const lanes_f coincident = clamp(0.01f * (end_radius + h->radius), ROUNDING_OF_HITS, MOST_COINCIDENT);
   return ((steepness * distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
          ((distance < coincident) & (cosine < -SELF_HIT_COSINE));
+}
+
+/* disc_belongs_to_end in lanes. */
+static inline lanes_i discs_of_end(float3 end_normal, float end_radius, float steepness, float3 away, lanes_f distance,
+                                   const BlockHits* h) {
+  const lanes_i turned = turned_lanes(end_normal, end_radius, away, distance, h);
+  const lanes_i own = lanes_of_end(end_normal, end_radius, steepness, distance, turned, h);
+  if (h->sheets == 0u)
+    return own;
+  const lanes_f own_along = fma(h->nx, (lanes_f)(away.x), fma(h->ny, (lanes_f)(away.y), h->nz * away.z));
+  const lanes_f along = select(own_along, -own_along, turned);
+  return own & ~(sheet_lanes(h) & (along < 0.0f) & (distance > ARRIVAL_DISTANCE * h->radius));
 }
 
 #ifndef HAS_SPECULAR

@@ -166,14 +166,10 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
-      if (any_lane(hit)) {
-        const lanes_f left = ray.t_max - h.t;
-        const lanes_i turned_at_origin = turned_lanes(ends.origin_normal, ends.origin_radius, ray.direction, h.t, &h);
-        const lanes_i turned_at_target = turned_lanes(ends.target_normal, ends.target_radius, ray.direction, left, &h);
-        if (any_lane(hit & ~lanes_of_end(ends.origin_normal, ends.origin_radius, at_origin, h.t, turned_at_origin, &h) &
-                     ~lanes_of_end(ends.target_normal, ends.target_radius, at_target, left, turned_at_target, &h)))
-          return true;
-      }
+      if (any_lane(hit) &&
+          any_lane(hit & ~discs_of_end(ends.origin_normal, ends.origin_radius, at_origin, ray.direction, h.t, &h) &
+                   ~discs_of_end(ends.target_normal, ends.target_radius, at_target, -ray.direction, ray.t_max - h.t, &h)))
+        return true;
     })
   }
   return false;

@@ -15,16 +15,19 @@ Vector vector_of(const float v[3]) {
   return {v[0], v[1], v[2]};
 }
 
-/// Whether a hit at distance t from a segment's end belongs to the surface there.
-bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& direction, double t) {
-  double cosine = vector_of(hit.normal).dot(vector_of(end.normal));
-  const double height = t * std::abs(vector_of(hit.normal).dot(direction)); // of the end above the disc's plane
-  if (is_sheet(hit) && height < SHEET_HEIGHT * (static_cast<double>(end.radius) + hit.radius))
-    cosine = std::abs(cosine); // the side that faces as the end does speaks for both
-  const double across = std::abs(vector_of(end.normal).dot(direction));
-  const double steepness = std::max(1.0, SELF_HIT_REACH / SELF_HIT_HEIGHT * across);
-  const double reach = SELF_HIT_REACH * (static_cast<double>(end.radius) + hit.radius);
-  return (steepness * t < reach && cosine > SELF_HIT_COSINE) ||
+/// Whether a hit at distance t from a segment's end belongs to the surface there. `away`: from the end.
+bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& away, double t) {
+  const double radii = static_cast<double>(end.radius) + hit.radius;
+  double cosine = vector_of(hit.normal).dot(vector_of(end.normal)), along = vector_of(hit.normal).dot(away);
+  if (is_sheet(hit)) {
+    if (cosine < 0.0 && t * std::abs(along) < SHEET_HEIGHT * radii) { // the other side speaks for both
+      cosine = -cosine;
+      along = -along;
+    }
+    if (along < 0.0 && t > ARRIVAL_DISTANCE * hit.radius) return false;
+  }
+  const double steepness = std::max(1.0, SELF_HIT_REACH / SELF_HIT_HEIGHT * std::abs(vector_of(end.normal).dot(away)));
+  return (steepness * t < SELF_HIT_REACH * radii && cosine > SELF_HIT_COSINE) ||
          (t < COINCIDENT(end.radius + hit.radius) && cosine < -SELF_HIT_COSINE);
 }
 
@@ -40,7 +43,7 @@ bool segment_blocked(View<Splat> splats, const Splat& from, const Splat& to) {
     const double t = normal.dot(offset) / normal.dot(direction);
     if (!(t > -margin && t < length + margin)) continue;
     if ((t * direction - offset).squaredNorm() > static_cast<double>(s.radius) * s.radius) continue;
-    if (!belongs_to_end(from, s, direction, t) && !belongs_to_end(to, s, direction, length - t)) return true;
+    if (!belongs_to_end(from, s, direction, t) && !belongs_to_end(to, s, -direction, length - t)) return true;
   }
   return false;
 }

@@ -69,7 +69,7 @@ TEST_CASE("segments are blocked as a linear scan in double precision says, in ev
   const auto truth = LinearScan(splats, splats).blocked(segments);
   const auto blocked = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
   CHECK(blocked > segments.size() / 20);
-  CHECK(blocked < segments.size() - segments.size() / 20);
+  CHECK(blocked < segments.size() - segments.size() / 25); // of sheets everywhere few are open
   std::vector<std::uint8_t> first;
   std::set<std::string> seen;
   for (const TraversalVariant& variant : tracing_variants()) {
