@@ -119,7 +119,7 @@ FluxSides flux_sides(const ClusterTree& tree) {
 }
 
 void update_cluster_fluxes(const ClusterTree& tree, const FluxSides& sides, View<ExchangePoint> points,
-                           View<double> radiosity, Judge judge, std::vector<ClusterFlux>& fluxes) {
+                           View<double> radiosity, LinearisationPoint about, std::vector<ClusterFlux>& fluxes) {
   const std::size_t clusters = tree.nodes.size();
   std::vector<Sums> sums(sides.side.size());
   parallel_ranges(clusters, 64, [&](std::size_t begin, std::size_t end) {
@@ -139,10 +139,10 @@ void update_cluster_fluxes(const ClusterTree& tree, const FluxSides& sides, View
     ClusterFlux& f = fluxes[at];
     std::copy_n(sums[at].flux, 3, f.flux);
     f.power = sums[at].power;
-    if (judge == Judge::before) continue;
+    if (about == LinearisationPoint::kept) continue;
     f.centre = sums[at].centre();
     for (int c = 0; c < 3; ++c)
-      f.judge[c] = f.flux[c].squaredNorm() > 0.0 ? f.flux[c] : sums[at].normal;
+      f.linearisation[c] = f.flux[c].squaredNorm() > 0.0 ? f.flux[c] : sums[at].normal;
   }
 }
 

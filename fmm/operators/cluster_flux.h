@@ -21,15 +21,15 @@ FluxSides flux_sides(const ClusterTree& tree);
 
 /// The points of a cluster that face one side.
 struct ClusterFlux {
-  Eigen::Vector3d centre{0, 0, 0}; ///< centroid of the points weighted by the power of all colours together
-  Eigen::Vector3d flux[3];         ///< sum of B A n, a colour each
-  Eigen::Vector3d judge[3];        ///< a receiver on whose side this points gets flux . r, all others nothing
-  double power = 0.0;              ///< sum of B A over points and colours
+  Eigen::Vector3d centre{0, 0, 0};  ///< centroid of the points weighted by the power of all colours together
+  Eigen::Vector3d flux[3];          ///< sum of B A n, a colour each
+  Eigen::Vector3d linearisation[3]; ///< a receiver on whose side this points gets flux . r, all others nothing
+  double power = 0.0;               ///< sum of B A over points and colours
 };
 
-/// Updates all fluxes from radiosity [points x 3]; with Judge::before centre and judge stay as they are. Linear in the
-/// number of points.
+/// Updates all fluxes from radiosity [points x 3]; with LinearisationPoint::kept centre and linearisation stay as they
+/// are. Linear in the number of points.
 void update_cluster_fluxes(const ClusterTree& tree, const FluxSides& sides, View<ExchangePoint> points,
-                           View<double> radiosity, Judge judge, std::vector<ClusterFlux>& fluxes);
+                           View<double> radiosity, LinearisationPoint about, std::vector<ClusterFlux>& fluxes);
 
 } // namespace pointgi

@@ -39,7 +39,7 @@ void receive_flux(const ExchangePoint& p, const ClusterFlux& source, double visi
   if (!(facing > 0.0)) return;
   const double scale = visible * inverse_pi * facing / (r2 * r2);
   for (int c = 0; c < 3; ++c)
-    if (source.judge[c].dot(r) < 0.0) h[c] -= scale * source.flux[c].dot(r);
+    if (source.linearisation[c].dot(r) < 0.0) h[c] -= scale * source.flux[c].dot(r);
 }
 
 } // namespace
@@ -167,10 +167,11 @@ void FmmOperator::evaluate_leaf(std::uint32_t leaf, View<double> radiosity, doub
   }
 }
 
-void FmmOperator::apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) {
+void FmmOperator::apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) {
   if (radiosity.size != 3 * points_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
-  if (judge == Judge::before && !judged_) throw std::invalid_argument("no radiosity was judged before");
-  judged_ = true;
+  if (about == LinearisationPoint::kept && !has_linearisation_)
+    throw std::invalid_argument("no linearisation point is kept");
+  has_linearisation_ = true;
   irradiance.resize(3 * points_.size());
   const auto for_all = [](const std::vector<std::uint32_t>& clusters, const auto& body) {
     parallel_ranges(clusters.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -178,7 +179,7 @@ void FmmOperator::apply(View<double> radiosity, Judge judge, std::vector<double>
         body(clusters[k]);
     });
   };
-  update_cluster_fluxes(tree_, sides_, points_, radiosity, judge, fluxes_);
+  update_cluster_fluxes(tree_, sides_, points_, radiosity, about, fluxes_);
   for (std::size_t level = levels_.size(); level-- > 0;)
     for_all(levels_[level], [&](std::uint32_t k) { moments_of(k, radiosity); });
   for (std::size_t level = 0; level < levels_.size(); ++level)

@@ -23,7 +23,7 @@ public:
               View<std::uint8_t> point_shares = {});
 
   std::size_t points() const override { return points_.size(); }
-  void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override;
+  void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
   const Grids& grids() const { return grids_; }
   const InteractionLists& lists() const { return lists_; }
@@ -48,7 +48,7 @@ private:
   Expansion moments_, local_;
   FluxSides sides_;
   std::vector<ClusterFlux> fluxes_;
-  bool judged_ = false;
+  bool has_linearisation_ = false;
 };
 
 } // namespace pointgi

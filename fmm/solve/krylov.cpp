@@ -41,7 +41,7 @@ struct generic_product_impl<pointgi::Transport, Right, SparseShape, DenseShape, 
   static void scaleAndAddTo(Result& result, const pointgi::Transport& transport, const Right& x, const double& scale) {
     const VectorXd b = x;
     ++transport.applies;
-    transport.exchange->apply({b.data(), static_cast<std::size_t>(b.size())}, pointgi::Judge::before,
+    transport.exchange->apply({b.data(), static_cast<std::size_t>(b.size())}, pointgi::LinearisationPoint::kept,
                               transport.irradiance);
     const Map<const VectorXd> h(transport.irradiance.data(), b.size());
     result += scale * (b - transport.albedo->cwiseProduct(h));

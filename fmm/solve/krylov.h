@@ -11,8 +11,8 @@ struct KrylovResult {
   bool useful = false; ///< finite and nearer to the solution than the guess
 };
 
-/// Improves x, a solution of (I - rho H) x = emission with mid links judged as before. Stops at |residual| <= tolerance
-/// |emission| or after most_steps of two applies each. `x` is left as it was unless the result is useful.
+/// Improves x, a solution of (I - rho H) x = emission about the kept linearisation point. Stops at |residual| <=
+/// tolerance |emission| or after most_steps of two applies each. `x` is left as it was unless the result is useful.
 KrylovResult solve_krylov(RadiosityOperator& exchange, const Eigen::VectorXd& emission, const Eigen::VectorXd& albedo,
                           double tolerance, unsigned most_steps, Eigen::VectorXd& x);
 

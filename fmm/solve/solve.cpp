@@ -40,7 +40,7 @@ void check(const RadiosityOperator& exchange, View<double> emission, View<double
 /// B = E + rho H(B); what changed gives the residual of the B before, and its fall the rate.
 void sweep(Problem& problem, const std::array<double, 3>& emitted, Eigen::VectorXd& b, Solution& solution) {
   std::vector<double> h;
-  problem.exchange.apply({b.data(), static_cast<std::size_t>(b.size())}, Judge::now, h);
+  problem.exchange.apply({b.data(), static_cast<std::size_t>(b.size())}, LinearisationPoint::current, h);
   const Eigen::Map<const Eigen::VectorXd> irradiance(h.data(), b.size());
   const Eigen::VectorXd next = problem.emission + problem.albedo.cwiseProduct(irradiance);
   const std::array<double, 3> change = problem.power(next - b);
@@ -79,7 +79,7 @@ bool jacobi(Problem& problem, const std::array<double, 3>& emitted, const SolveO
 /// Krylov and a sweep in turn. False when that did not end it.
 bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options, Eigen::VectorXd& b,
                 Solution& solution) {
-  constexpr int most_turns = 6; // judging mid links anew changes little: two are the rule
+  constexpr int most_turns = 6; // another linearisation point changes little: two are the rule
   double inner = 0.3 * options.tolerance;
   for (int turn = 0; turn < most_turns && solution.applies < options.most_applies; ++turn) {
     const double before = solution.residual;

@@ -39,9 +39,10 @@ struct Solution {
 };
 
 /// emission E [points x 3, W/m^2], albedo rho [points x 3, 0..1], area [points, any unit]; tree order, RGB. Jacobi's
-/// method first; where its residual falls slowly, Eigen's BiCGSTAB over the operator with mid links judged as before,
-/// and a sweep of Jacobi's after each, which judges them anew and gives the residual. Ends in bounded time, whatever
-/// the scene. Deterministic. Throws std::invalid_argument on sizes that differ and on options out of range.
+/// method first; where its residual falls slowly, Eigen's BiCGSTAB over the operator about the kept linearisation
+/// point, and a sweep of Jacobi's after each, which moves the linearisation point and gives the residual. Ends in
+/// bounded time, whatever the scene. Deterministic. Throws std::invalid_argument on sizes that differ and on options
+/// out of range.
 Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
                          const SolveOptions& options);
 

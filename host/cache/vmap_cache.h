@@ -1,13 +1,13 @@
 #pragma once
-/// V-maps kept between runs: links hang on the geometry alone, so a second picture of a scene need not ask again.
+/// V-maps kept between runs: links depend on the geometry alone, so a second picture of a scene need not ask again.
 #include "octree/vmap/make_links.h"
 #include <optional>
 #include <string>
 
 namespace pointgi {
 
-/// Everything that links hang on, as text: the tree and its points, all splats that block, the options but for `batch`,
-/// and who answers (device, driver, variant: two may differ in a rim's rounding).
+/// Everything that links depend on, as text: the tree and its points, all splats that block, the options but for
+/// `batch`, and who answers (device, driver, variant: two may differ in a rim's rounding).
 std::string vmap_key(const ClusterTree& tree, View<Splat> splats, const LinkOptions& options,
                      const std::string& answered_by);
 

@@ -5,8 +5,8 @@ namespace pointgi {
 
 namespace {
 
-/// Kernels that traversal.fast_math may loosen; all others answer to the bit. Not -cl-fast-relaxed-math and not
-/// -cl-finite-math-only: empty boxes and parallel rays are infinities, which these let compilers forget.
+/// Kernels that traversal.fast_math may loosen; the answers of all others are bit-identical. Not -cl-fast-relaxed-math
+/// and not -cl-finite-math-only: empty boxes and parallel rays are infinities, which these let compilers forget.
 constexpr const char* fast_files[] = {"traverse/trace.cl", "render/eye_rays.cl", "render/shade.cl"};
 constexpr const char* fast_options = " -cl-mad-enable -cl-no-signed-zeros -cl-denorms-are-zero";
 

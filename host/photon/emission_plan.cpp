@@ -98,16 +98,16 @@ public:
       const auto leaf = static_cast<pg_uint>(k);
       for (std::size_t s = 0; s < sources.delta.size(); ++s)
         pairs_.push_back({static_cast<pg_uint>(s), leaf, from_delta(sources.delta[s], leaf_of(leaves, k))});
-      if (emitted_ > 0.0) pairs_.push_back({AIM_EMITTERS, leaf, from_emitters(leaf_of(leaves, k))});
+      if (emitted_ > 0.0) pairs_.push_back({SOURCE_EMITTERS, leaf, from_emitters(leaf_of(leaves, k))});
       if (sources.has_environment())
-        pairs_.push_back({AIM_ENVIRONMENT, leaf,
+        pairs_.push_back({SOURCE_ENVIRONMENT, leaf,
                           scaled(leaf_of(leaves, k).from_everywhere(), luminance(sources.environment.data()))});
     }
   }
 
   std::vector<Pair> take(const AskSegments& ask) {
     for (std::size_t begin = 0; begin < pairs_.size(); begin += most_photon_pairs)
-      judge(begin, std::min(begin + most_photon_pairs, pairs_.size()), ask);
+      test_visibility(begin, std::min(begin + most_photon_pairs, pairs_.size()), ask);
     return std::move(pairs_);
   }
 
@@ -140,18 +140,18 @@ private:
 
   /// Where light of the pair's source for a splat of its leaf comes from.
   Splat origin(const Pair& pair, std::size_t k, const Splat& target) const {
-    if (pair.source == AIM_EMITTERS) return points_[emitters_[k * emitter_samples / segments_a_pair]];
+    if (pair.source == SOURCE_EMITTERS) return points_[emitters_[k * emitter_samples / segments_a_pair]];
     const DeltaLight& light = sources_.delta[pair.source];
     if (light.type == LIGHT_POINT) return free_point(vector(light.vector));
     return free_point(vector(target.position) + 2.0 * vector(light.vector)); // outside the root cube
   }
 
-  void judge(std::size_t begin, std::size_t end, const AskSegments& ask) {
+  void test_visibility(std::size_t begin, std::size_t end, const AskSegments& ask) {
     std::vector<Splat> table;
     std::vector<Segment> segments;
     std::vector<std::size_t> of;
     for (std::size_t p = begin; p < end; ++p) {
-      if (pairs_[p].source == AIM_ENVIRONMENT) continue; // some of it is nearly always seen
+      if (pairs_[p].source == SOURCE_ENVIRONMENT) continue; // some of it is nearly always seen
       const PhotonLeaf& leaf = leaves_.leaves[pairs_[p].leaf];
       pairs_[p].visible = false;
       for (std::size_t k = 0; k < segments_a_pair; ++k) {
@@ -199,14 +199,14 @@ void deal_out(const std::vector<Pair>& pairs, double photons, std::uint32_t seed
     const double after = std::floor(sum + start), count = after - before;
     before = after;
     if (!(count >= 1.0)) continue;
-    PhotonAim aim{};
-    aim.first = plan.photons;
-    aim.count = static_cast<pg_uint>(count);
-    aim.source = pair.source;
-    aim.leaf = pair.leaf;
-    aim.share = static_cast<float>(equal_power ? total / photons : expected >= 1.0 ? 1.0 / count : 1.0 / expected);
-    plan.aims.push_back(aim);
-    plan.photons += aim.count;
+    EmissionBatch batch{};
+    batch.first = plan.photons;
+    batch.count = static_cast<pg_uint>(count);
+    batch.source = pair.source;
+    batch.leaf = pair.leaf;
+    batch.share = static_cast<float>(equal_power ? total / photons : expected >= 1.0 ? 1.0 / count : 1.0 / expected);
+    plan.batches.push_back(batch);
+    plan.photons += batch.count;
   }
 }
 

@@ -27,8 +27,8 @@ struct EmissionOptions {
 };
 
 struct EmissionPlan {
-  std::vector<PhotonAim> aims; ///< one after the other in the photons' numbers; none without photons
-  std::uint32_t photons = 0;   ///< numbers in all: more than asked for, as some fly past their leaf
+  std::vector<EmissionBatch> batches; ///< one after the other in the photons' numbers; none without photons
+  std::uint32_t photons = 0;          ///< numbers in all: more than asked for, as some fly past their leaf
 };
 
 /// Pairs of a source and a leaf that are told apart, about: how many leaves there may be follows.

@@ -29,7 +29,7 @@ private:
   std::uint32_t seed_;
   unsigned halvings_ = 0;
   std::vector<Photon> photons_;
-  std::vector<std::uint8_t> survives_; ///< halvings, of each photon
+  std::vector<std::uint8_t> thinning_level_; ///< halvings, of each photon
 };
 
 } // namespace pointgi

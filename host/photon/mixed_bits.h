@@ -3,7 +3,8 @@
 
 namespace pointgi {
 
-/// 64 bits of which the upper half hang on all bits of the number: numbers that follow each other get bits as if drawn.
+/// 64 bits of which the upper half depend on all bits of the number: numbers that follow each other get bits as if
+/// drawn.
 inline std::uint64_t mixed_bits(std::uint64_t number) {
   std::uint64_t h = (number + 1) * 0x9E3779B97F4A7C15ull;
   h = (h ^ (h >> 29)) * 0xBF58476D1CE4E5B9ull;

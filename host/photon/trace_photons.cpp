@@ -23,15 +23,15 @@ Photon stored_photon(const PhotonFlight& flight) {
   std::copy_n(flight.position, 3, photon.position);
   photon.inward = flight.inward;
   for (int c = 0; c < 3; ++c)
-    photon.power[c] = flight.power[c] * flight.seen;
+    photon.power[c] = flight.power[c] * flight.radiance_factor;
   photon.splat = flight.splat;
   return photon;
 }
 
 /// Enters a photon that has ended.
-void book(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger, KeptPhotons& kept) {
+void add_to_ledger(const PhotonFlight& flight, std::uint32_t number, PhotonLedger& ledger, KeptPhotons& kept) {
   ++ledger.aimed;
-  if (flight.end == PHOTON_ASIDE) return;
+  if (flight.end == PHOTON_MISSED) return;
   ++ledger.emitted;
   add(flight.emitted, ledger.emitted_power);
   add(flight.absorbed, ledger.absorbed_power);
@@ -114,7 +114,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   lights.delta = session.upload(request.sources.delta);
   lights.emitters = session.upload(request.sources.emitters);
   const auto radiance = session.upload(request.sources.radiance);
-  const auto aims = session.upload(request.plan.aims);
+  const auto batches = session.upload(request.plan.batches);
   const auto leaves = session.upload(request.leaves.leaves);
   const auto splats = session.upload(request.leaves.splats);
   const auto leaf_of = session.upload(request.leaves.leaf_of);
@@ -130,12 +130,12 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
     }
     const double seconds = session.launch(
         kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points, request.normal_field,
-        lights.arguments(), radiance, aims, leaves, splats, leaf_of, flights,
-        static_cast<cl_uint>(request.plan.aims.size()), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
+        lights.arguments(), radiance, batches, leaves, splats, leaf_of, flights,
+        static_cast<cl_uint>(request.plan.batches.size()), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     traced.ledger.device_seconds += seconds;
     auto number = static_cast<std::uint32_t>(first);
     for (const PhotonFlight& flight : session.download(flights, count))
-      book(flight, number++, traced.ledger, kept);
+      add_to_ledger(flight, number++, traced.ledger, kept);
     return seconds;
   };
   if (for_each_batch(EqualItems{photons}, pace, {control.stop, control.progress}, launch) < photons) {
@@ -190,7 +190,7 @@ TracedPhotons send_photons_from_surfaces(Session& session, const DevicePools& po
   const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), 1, false);
   EmissionPlan plan;
   if (photons > 0 && !sources.emitters.empty()) {
-    plan.aims.push_back({0, photons, AIM_EMITTERS, NO_PHOTON_LEAF, 1.0f / static_cast<float>(photons)});
+    plan.batches.push_back({0, photons, SOURCE_EMITTERS, NO_PHOTON_LEAF, 1.0f / static_cast<float>(photons)});
     plan.photons = photons;
   }
   PhotonRequest request{lighting, sources, leaves, plan, normal_field, variant, side, PhotonStart::from_surfaces};

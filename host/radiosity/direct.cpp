@@ -103,7 +103,7 @@ DeviceDirect::DeviceDirect(Session& session, const DevicePools& pools, const Tra
   trace(pools, variant, points, options);
 }
 
-void DeviceDirect::apply(View<double> radiosity, Judge, std::vector<double>& irradiance) {
+void DeviceDirect::apply(View<double> radiosity, LinearisationPoint, std::vector<double>& irradiance) {
   irradiance.clear();
   if (points_.empty()) return;
   const auto flux = session_.upload(flux_planes(radiosity, points_, stride_));

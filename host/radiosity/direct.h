@@ -28,8 +28,8 @@ public:
                const DirectOptions& options);
 
   std::size_t points() const override { return points_.size(); }
-  /// Linear in B whatever `judge` is.
-  void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override;
+  /// Linear in B whatever the linearisation point is.
+  void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
   std::uint64_t rays() const { return rays_; }
   double trace_seconds() const { return trace_seconds_; } ///< of the device

@@ -169,7 +169,7 @@ FmmFlux device_flux(const ClusterFlux& f) {
     d.centre[a] = static_cast<float>(f.centre[a]);
     for (int c = 0; c < 3; ++c) {
       d.flux[3 * c + a] = static_cast<float>(f.flux[c][a]);
-      d.judge[3 * c + a] = static_cast<float>(f.judge[c][a]);
+      d.linearisation[3 * c + a] = static_cast<float>(f.linearisation[c][a]);
     }
   }
   return d;
@@ -177,11 +177,12 @@ FmmFlux device_flux(const ClusterFlux& f) {
 
 } // namespace
 
-void DeviceFmm::apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) {
+void DeviceFmm::apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) {
   const auto flux = session_.upload(flux_planes(radiosity, points_, stride_));
-  if (judge == Judge::before && !judged_) throw std::invalid_argument("no radiosity was judged before");
-  judged_ = true;
-  update_cluster_fluxes(tree_, sides_, points_, radiosity, judge, fluxes_);
+  if (about == LinearisationPoint::kept && !has_linearisation_)
+    throw std::invalid_argument("no linearisation point is kept");
+  has_linearisation_ = true;
+  update_cluster_fluxes(tree_, sides_, points_, radiosity, about, fluxes_);
   std::vector<FmmFlux> cluster_planes(fluxes_.size());
   std::transform(fluxes_.begin(), fluxes_.end(), cluster_planes.begin(), device_flux);
   const auto fluxes = session_.upload(cluster_planes);

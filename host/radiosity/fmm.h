@@ -16,7 +16,7 @@ public:
             View<std::uint8_t> point_shares = {});
 
   std::size_t points() const override { return points_.size(); }
-  void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override;
+  void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
   double device_seconds() const { return device_seconds_; } ///< of all applies
   const Grids& grids() const { return grids_; }
@@ -54,7 +54,7 @@ private:
   std::vector<ClusterFlux> fluxes_;
   cl_uint nodes_ = 0, stride_ = 0; ///< nodes of all grids; points padded to blocks
   std::size_t group_ = 8;
-  bool judged_ = false;
+  bool has_linearisation_ = false;
   double device_seconds_ = 0.0;
 
   std::vector<Jobs> up_, down_; ///< a level each; leaves apart from other clusters in up_

@@ -51,7 +51,7 @@ std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene
 
 } // namespace
 
-// Mid links judge by the flux to which side a cluster shines, which is not quite linear
+// The flux decides to which side the mid links of a cluster shine, which is not quite linear
 // (fmm/solve/radiosity_operator.h).
 extern const RadiosityMethod fmm_method{"fmm", nullptr, true, prepare};
 

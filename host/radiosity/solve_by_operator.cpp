@@ -11,8 +11,8 @@ public:
   ReportedExchange(RadiosityOperator& exchange, const WorkReport& report) : exchange_(exchange), report_(report) {}
 
   std::size_t points() const override { return exchange_.points(); }
-  void apply(View<double> radiosity, Judge judge, std::vector<double>& irradiance) override {
-    exchange_.apply(radiosity, judge, irradiance);
+  void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override {
+    exchange_.apply(radiosity, about, irradiance);
     report_(std::to_string(++applies_) + " applies of the operator");
   }
 
@@ -61,7 +61,7 @@ RadiosityField solve_by_operator(RadiosityOperator* device, const ExchangedPoint
   RadiosityField field;
   field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
   std::vector<double> gathered;
-  exchange.apply(field.solution.radiosity, Judge::now, gathered);
+  exchange.apply(field.solution.radiosity, LinearisationPoint::current, gathered);
   field.irradiance.resize(light.direct.size);
   for (std::size_t k = 0; k < points; ++k)
     for (std::size_t c = 0; c < 3; ++c)

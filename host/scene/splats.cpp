@@ -1,7 +1,5 @@
 #include "host/scene/splats.h"
-#include "host/cloud/input_file.h"
-#include "host/cloud/readers/mesh.h"
-#include "host/cloud/readers/ply.h"
+#include "host/cloud/readers/readers.h"
 #include "host/error.h"
 #include "host/image/srgb.h"
 #include "host/scene/sample_shape.h"
@@ -82,25 +80,9 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 
 } // namespace
 
-namespace {
-
-/// Scanners' own formats are for the programs that know them; the mesh library's answer would only puzzle.
-void refuse_scanner_format(const std::string& file) {
-  for (const char* extension : {".las", ".laz", ".e57", ".pcd", ".pts", ".ptx", ".xyz"})
-    if (has_extension(file, extension))
-      throw Error(ErrorKind::input,
-                  file + ": " + (extension + 1) +
-                      " is not read directly; convert it to PLY first, with `pdal translate` or CloudCompare");
-}
-
-} // namespace
-
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  if (!settings.points) refuse_scanner_format(settings.file);
-  PointCloud cloud = settings.points ? *settings.points
-                     : has_extension(settings.file, ".ply")
-                         ? read_ply(settings.file, report)
-                         : sample_mesh(settings.file, settings.spacing / settings.scale, report);
+  PointCloud cloud =
+      settings.points ? *settings.points : read_cloud(settings.file, settings.spacing / settings.scale, report);
   if (settings.points) report.format = "arrays in memory";
   try {
     complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);

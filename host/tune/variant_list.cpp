@@ -103,7 +103,7 @@ std::vector<TraversalVariant> all_variants() {
   for (const TraversalForm form : traversal_forms())
     for_every(form, [&](TraversalVariant v) {
       exact.push_back(v);
-      if (!plain_but_for_kernel(v)) return; // what fast math gains does not hang on the tree
+      if (!plain_but_for_kernel(v)) return; // what fast math gains does not depend on the tree
       v.fast_math = true;
       fast.push_back(v);
     });

@@ -1,5 +1,5 @@
 /* Vector helpers whose rounding does not depend on what the compiler likes to contract: every fused product is written
- * as fma(), and contraction of the rest is off. The host twins do the same, so CPU devices agree with them to the bit. */
+ * as fma(), and contraction of the rest is off. The host twins do the same, so CPU devices agree with them bit for bit. */
 #pragma OPENCL FP_CONTRACT OFF
 #include "shared/scalar.h"
 

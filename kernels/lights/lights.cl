@@ -31,7 +31,7 @@ static inline Viewed viewed_by(float3 direction, float specular_probability) {
 }
 
 /* Rays off a surface start a little behind it: where two walls meet, rounding may put the point a few float steps beyond
- * the other wall, and light would leak in along the edge. The surface itself does not count (ShadowEnds). */
+ * the other wall, and light would leak in along the edge. The surface itself does not count (OcclusionEnds). */
 #define BEHIND_SURFACE(radius) (-SEGMENT_MARGIN(radius))
 
 /* Whether nothing stands between the surface and the light; counts its ray. */
@@ -44,7 +44,7 @@ static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* li
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
 #endif
-  const ShadowEnds ends = {s->normal, light->normal, s->radius, light->radius};
+  const OcclusionEnds ends = {s->normal, light->normal, s->radius, light->radius};
   *rays += 1.0f;
   return !trace_any(POOL_ARGS, ray, ends);
 }

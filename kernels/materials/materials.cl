@@ -87,8 +87,8 @@ static inline Ray scattered_ray(const Surface* s, const Scatter* scatter, float 
 }
 
 /* The surface that the ray leaves, for trace_closest_from and blended_surface. */
-static inline ShadowEnds scattered_ends(const Surface* s, const Scatter* scatter, Media media) {
-  ShadowEnds ends = free_ends();
+static inline OcclusionEnds scattered_ends(const Surface* s, const Scatter* scatter, Media media) {
+  OcclusionEnds ends = free_ends();
   ends.origin_normal = s->normal;
   ends.origin_radius = s->radius;
   ends.origin_material = s->material + 1u;

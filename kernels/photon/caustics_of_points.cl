@@ -30,7 +30,7 @@ __kernel void caustics_of_points(const __global PhotonNode* nodes, const __globa
   const PhotonPool photons = {nodes, buckets}, areas = {area_nodes, area_buckets};
   const GatherPlace place = {points[2u * i].xyz, points[2u * i + 1u].xyz};
   const uint k = max(params->k, 2u); /* the farthest of them has no weight */
-  NO_PHOTONS_YET(near);
+  NEAR_PHOTONS(near);
   nearest_photons(photons, params, place, k, INFINITY, INFINITY, &near);
   const bool enough = near.within + near.fresh >= k;
   const float bound2 = enough ? near.within2 : params->radius2, radii = sqrt(bound2) / radius;

@@ -5,7 +5,7 @@
 #include "shared/photon_types.h"
 
 /* Uses of random numbers at vertex 0 (kernels/lib/sampling.cl). */
-#define DIMENSION_AIM 1u
+#define DIMENSION_TARGET 1u
 #define DIMENSION_ORIGIN 2u
 
 /* What photons are made from. */
@@ -18,21 +18,21 @@ typedef struct PhotonSource {
 
 typedef struct Emission {
   Ray ray;
-  ShadowEnds ends; /* of the surface that it leaves, or free */
+  OcclusionEnds ends; /* of the surface that it leaves, or free */
   float3 power;
 } Emission;
 
-/* Two numbers in [0,1) for photon `number` of the aim's: one stratum each of the first, and van der Corput's sequence, turned
- * by a random number of the aim, for the second. */
-static inline float2 stratified2(const __global PhotonAim* aim, uint number, SampleId id) {
+/* Two numbers in [0,1) for photon `number` of the batch's: one stratum each of the first, and van der Corput's sequence, turned
+ * by a random number of the batch, for the second. */
+static inline float2 stratified2(const __global EmissionBatch* batch, uint number, SampleId id) {
   uint reversed = number;
   reversed = ((reversed & 0x55555555u) << 1) | ((reversed >> 1) & 0x55555555u);
   reversed = ((reversed & 0x33333333u) << 2) | ((reversed >> 2) & 0x33333333u);
   reversed = ((reversed & 0x0f0f0f0fu) << 4) | ((reversed >> 4) & 0x0f0f0f0fu);
   reversed = ((reversed & 0x00ff00ffu) << 8) | ((reversed >> 8) & 0x00ff00ffu);
   reversed = (reversed << 16) | (reversed >> 16);
-  const uint turn = pcg4d((uint4)(aim->first, aim->leaf, 0x2545F491u, id.seed)).x;
-  const float u = ((float)number + random4(id, DIMENSION_AIM).x) / (float)aim->count;
+  const uint turn = pcg4d((uint4)(batch->first, batch->leaf, 0x2545F491u, id.seed)).x;
+  const float u = ((float)number + random4(id, DIMENSION_TARGET).x) / (float)batch->count;
   return (float2)(fmin(u, 0.99999994f), unit_float(reversed + turn));
 }
 
@@ -64,11 +64,11 @@ static inline float3 emitter_point(POOL_PARAMS, PhotonSource from, float4 u, Emi
 static inline float luminance_of(float3 c) { return dot3(c, (float3)(0.2126f, 0.7152f, 0.0722f)); }
 
 #ifdef EQUAL_POWER
-/* The point that photon `number` of the aim flies to: all splats of the leaf have as many, those left over at random. */
-static inline float3 equal_target(POOL_PARAMS, PhotonSource from, const __global PhotonAim* aim, uint number, SampleId id) {
-  const __global PhotonLeaf* leaf = from.leaves + aim->leaf;
-  const float4 u = random4(id, DIMENSION_AIM);
-  const uint whole = aim->count - aim->count % leaf->count;
+/* The point that photon `number` of the batch flies to: all splats of the leaf have as many, those left over at random. */
+static inline float3 equal_target(POOL_PARAMS, PhotonSource from, const __global EmissionBatch* batch, uint number, SampleId id) {
+  const __global PhotonLeaf* leaf = from.leaves + batch->leaf;
+  const float4 u = random4(id, DIMENSION_TARGET);
+  const uint whole = batch->count - batch->count % leaf->count;
   const uint k = number < whole ? number % leaf->count : min((uint)(u.x * (float)leaf->count), leaf->count - 1u);
   const uint splat = from.leaf_splats[leaf->first + k];
   const float4 centre = pool_point_texel(POINT_TEXELS * splat);
@@ -76,8 +76,8 @@ static inline float3 equal_target(POOL_PARAMS, PhotonSource from, const __global
 }
 #endif
 
-/* Photon `number` of the aim's. */
-static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __global PhotonAim* aim, uint number, SampleId id) {
+/* Photon `number` of the batch's. */
+static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __global EmissionBatch* batch, uint number, SampleId id) {
   Emission e;
   e.ends = free_ends();
   e.ray.t_min = 0.0f;
@@ -85,20 +85,20 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
 #ifdef STEP_ABSOLUTE
   e.ray.step_delta = from.lights.params->step_delta;
 #endif
-  const __global PhotonLeaf* leaf = from.leaves + aim->leaf;
+  const __global PhotonLeaf* leaf = from.leaves + batch->leaf;
   const float4 u = random4(id, DIMENSION_ORIGIN);
-  bool parallel = aim->source == AIM_ENVIRONMENT;
+  bool parallel = batch->source == SOURCE_ENVIRONMENT;
   float3 colour = (float3)(0.0f), origin = (float3)(0.0f), towards = (float3)(0.0f, 0.0f, 1.0f);
   float solid_angle = 1.0f;
-  if (aim->source < AIM_ENVIRONMENT) {
+  if (batch->source < SOURCE_ENVIRONMENT) {
 #ifdef HAS_DELTA_LIGHTS
-    const PhotonOrigin of_light = emit_from_light(from.lights.delta + aim->source, u.xy);
+    const PhotonOrigin of_light = emit_from_light(from.lights.delta + batch->source, u.xy);
     colour = of_light.strength;
     parallel = of_light.parallel;
     origin = of_light.vector;
     towards = origin;
 #endif
-  } else if (aim->source == AIM_EMITTERS) {
+  } else if (batch->source == SOURCE_EMITTERS) {
     origin = emitter_point(POOL_ARGS, from, u, &e);
     colour = e.power;
     e.ray.t_min = BEHIND_SURFACE(e.ends.origin_radius);
@@ -113,29 +113,29 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
 #endif
   }
 #ifdef EQUAL_POWER
-  const float3 target = equal_target(POOL_ARGS, from, aim, number, id);
+  const float3 target = equal_target(POOL_ARGS, from, batch, number, id);
   const float luminance = luminance_of(colour);
-  e.power = luminance > 0.0f ? colour * (aim->share / luminance) : (float3)(0.0f);
+  e.power = luminance > 0.0f ? colour * (batch->share / luminance) : (float3)(0.0f);
   e.ray.origin = parallel ? target + OUTSIDE * towards : origin;
   e.ray.direction = normalize3(target - e.ray.origin);
 #else
-  const float2 v = stratified2(aim, number, id);
+  const float2 v = stratified2(batch, number, id);
   const float3 centre = load3(leaf->centre);
   if (parallel) {
     const float area = 3.14159265f * leaf->radius * leaf->radius;
     e.ray.origin = centre + disc_point(towards, leaf->radius, v.x, v.y) + (OUTSIDE + leaf->radius) * towards;
     e.ray.direction = -towards;
-    e.power = colour * (area * solid_angle * aim->share);
+    e.power = colour * (area * solid_angle * batch->share);
   } else {
     const float3 to = centre - origin;
     const float d2 = dot3(to, to), s2 = leaf->radius * leaf->radius / d2; /* from inside, or its middle: all round */
     const float3 axis = d2 > 0.0f ? to / sqrt(d2) : towards;
     e.ray.origin = origin;
     e.ray.direction = cone_direction(axis, s2 < 1.0f ? s2 : 1.0f, v, &solid_angle);
-    e.power = colour * (solid_angle * aim->share);
+    e.power = colour * (solid_angle * batch->share);
   }
 #endif
-  if (aim->source == AIM_EMITTERS) {
+  if (batch->source == SOURCE_EMITTERS) {
     const float cosine = dot3(e.ray.direction, e.ends.origin_normal);
 #ifdef EQUAL_POWER
     e.power = cosine > 0.0f ? e.power : (float3)(0.0f);

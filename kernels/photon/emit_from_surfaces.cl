@@ -6,10 +6,10 @@
 #include "photon/emit.cl"
 #include "materials/materials.cl"
 
-/* Photon `number` of the aim's, as it looks for light; its power is for a radiance of 1. */
-static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __global PhotonAim* aim, uint number,
+/* Photon `number` of the batch's, as it looks for light; its power is for a radiance of 1. */
+static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __global EmissionBatch* batch, uint number,
                                       SampleId id) {
-  const float2 v = stratified2(aim, number, id);
+  const float2 v = stratified2(batch, number, id);
   const float4 u = random4(id, DIMENSION_ORIGIN);
   const uint i = pick(&from.lights.emitters->cumulative, sizeof(Emitter) / sizeof(float), from.lights.params->emitters, v.x);
   const float chosen = from.lights.emitters[i].cumulative - (i > 0u ? from.lights.emitters[i - 1u].cumulative : 0.0f);
@@ -32,12 +32,12 @@ static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __gl
   e.ends.origin_material = material + 1u;
   e.ends.origin_back = inside ? 1u : 0u;
   e.ends.medium = inside ? material + 1u : 0u;
-  e.power = chosen > 0.0f ? (float3)(3.14159265f * area * (two_sided ? 2.0f : 1.0f) * aim->share / chosen) : (float3)(0.0f);
+  e.power = chosen > 0.0f ? (float3)(3.14159265f * area * (two_sided ? 2.0f : 1.0f) * batch->share / chosen) : (float3)(0.0f);
   return e;
 }
 
 /* Back from the surface that sends the light. */
-static inline void turn_round(const Surface* s, Ray* ray, ShadowEnds* ends) {
+static inline void turn_round(const Surface* s, Ray* ray, OcclusionEnds* ends) {
   ray->origin = s->position;
   ray->direction = -ray->direction;
   *ends = free_ends();

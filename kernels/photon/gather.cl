@@ -50,7 +50,7 @@ typedef struct NearPhotons {
   float within2;
 } NearPhotons;
 
-#define NO_PHOTONS_YET(name)                 \
+#define NEAR_PHOTONS(name)                 \
   float name##_distance2[GATHER_ROOM];      \
   uint name##_photon[GATHER_ROOM];          \
   NearPhotons name = {name##_distance2, name##_photon, 0u, 0u, 0u, 0.0f}

@@ -13,7 +13,7 @@ __kernel void caustic_irradiance(const __global PhotonNode* nodes, const __globa
     return;
   const PhotonPool pool = {nodes, buckets};
   const GatherPlace place = {points[2u * i].xyz, points[2u * i + 1u].xyz};
-  NO_PHOTONS_YET(near);
+  NEAR_PHOTONS(near);
   nearest_photons(pool, params, place, params->k, INFINITY, INFINITY, &near);
   irradiance[i] = (float4)(irradiance_of(pool, params, params->k, &near), 0.0f);
 }

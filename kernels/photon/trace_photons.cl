@@ -1,8 +1,8 @@
 /* Photons from the lights by way of specular surfaces to diffuse ones, LS+D, or where FROM_SURFACES from diffuse surfaces,
  * LD+S+D (method.md section 5).
  * NDRange: 1-D, a work-item a photon, padded; work-item i follows photon first + i, for i < count, and writes flights[i].
- * A photon depends on its number alone, not on how they are cut into launches. aims, in the order of their photons,
- * aim_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER or FROM_SURFACES, any leaf will do for a
+ * A photon depends on its number alone, not on how they are cut into launches. batches, in the order of their photons,
+ * batch_count >= 1 of them; leaf_of[k]: leaf of point k. Where EQUAL_POWER or FROM_SURFACES, any leaf will do for a
  * photon, else only its own. */
 #include "photon/emit.cl"
 #include "materials/materials.cl"
@@ -13,12 +13,12 @@
 #define DIMENSION_CHOICE 3u
 #define DIMENSION_SCATTER 4u
 
-/* The aim of a photon. */
-static inline uint aim_of(const __global PhotonAim* aims, uint aim_count, uint photon) {
-  uint low = 0u, high = aim_count - 1u;
+/* The batch of a photon. */
+static inline uint batch_of(const __global EmissionBatch* batches, uint batch_count, uint photon) {
+  uint low = 0u, high = batch_count - 1u;
   while (low < high) {
     const uint middle = (low + high + 1u) / 2u;
-    if (aims[middle].first <= photon)
+    if (batches[middle].first <= photon)
       low = middle;
     else
       high = middle - 1u;
@@ -62,27 +62,27 @@ static inline uint meet_surface(const Surface* s, const __global Material* mater
   return is_dark(*power) ? PHOTON_ABSORBED : PHOTON_ENDS;
 }
 
-__kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global PhotonAim* aims,
+__kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global EmissionBatch* batches,
                             const __global PhotonLeaf* leaves, const __global uint* leaf_splats,
-                            const __global uint* leaf_of, __global PhotonFlight* flights, uint aim_count, uint first,
+                            const __global uint* leaf_of, __global PhotonFlight* flights, uint batch_count, uint first,
                             uint count) {
   const uint item = get_global_id(0);
   if (item >= count)
     return;
-  const __global PhotonAim* aim = aims + aim_of(aims, aim_count, first + item);
+  const __global EmissionBatch* batch = batches + batch_of(batches, batch_count, first + item);
   const PhotonSource from = {{LIGHT_ARGS}, radiance, leaves, leaf_splats};
   SampleId id = {(uint2)(first + item, 0x20000000u), 0u, params->seed, 0u};
 #ifdef FROM_SURFACES
-  const Emission e = look_for_light(POOL_ARGS, from, aim, first + item - aim->first, id);
+  const Emission e = look_for_light(POOL_ARGS, from, batch, first + item - batch->first, id);
 #else
-  const Emission e = emit_photon(POOL_ARGS, from, aim, first + item - aim->first, id);
+  const Emission e = emit_photon(POOL_ARGS, from, batch, first + item - batch->first, id);
 #endif
   const uint most = min(params->most_bounces, PHOTON_MOST_BOUNCES);
   float3 power = e.power, emitted = (float3)(0.0f), absorbed = (float3)(0.0f), position = (float3)(0.0f), inward = (float3)(0.0f);
   Ray ray = e.ray;
-  ShadowEnds ends = e.ends;
+  OcclusionEnds ends = e.ends;
   Media media = in_air();
-  uint end = PHOTON_ASIDE, bounces = FIRST_RAY, splat = NO_SPLAT;
+  uint end = PHOTON_MISSED, bounces = FIRST_RAY, splat = NO_SPLAT;
   float rays = 0.0f;
 #ifdef HAS_TRANSMISSION
   float set_out_in = 0.0f; /* index of what the photon set out in, when it has passed through glass: only then it is known */
@@ -102,7 +102,7 @@ __kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* ra
     }
 #endif
     if (!met) {
-      end = bounces > 0u ? PHOTON_ESCAPED : PHOTON_ASIDE;
+      end = bounces > 0u ? PHOTON_ESCAPED : PHOTON_MISSED;
       break;
     }
     if (bounces == 0u) {
@@ -110,7 +110,7 @@ __kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* ra
       if (leaf_of[s.splat] == NO_PHOTON_LEAF)
         break;
 #else
-      if (leaf_of[s.splat] != aim->leaf)
+      if (leaf_of[s.splat] != batch->leaf)
         break;
 #endif
       emitted = power;
@@ -131,7 +131,7 @@ __kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* ra
 #ifdef HAS_TRANSMISSION
     /* The power of point lights is that of the light, whatever stands about them; that of surfaces comes of a radiance. */
     if (scatter.through && set_out_in == 0.0f)
-      set_out_in = aim->source < AIM_ENVIRONMENT ? 1.0f : here;
+      set_out_in = batch->source < SOURCE_ENVIRONMENT ? 1.0f : here;
 #endif
     end = PHOTON_CUT;
     if (bounces + 2u > most) /* no diffuse surface may follow */
@@ -140,20 +140,20 @@ __kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* ra
     ends = scattered_ends(&s, &scatter, media);
     id.vertex += 1u;
   }
-  float seen = 1.0f;
+  float radiance_factor = 1.0f;
 #ifdef HAS_TRANSMISSION
   if (set_out_in > 0.0f) {
     const float ratio = set_out_in / ior_of(media, materials);
-    seen = ratio * ratio;
+    radiance_factor = ratio * ratio;
   }
 #endif
   __global PhotonFlight* flight = flights + item;
   store3(position, flight->position);
   flight->inward = direction_bits(inward.x, 0u) | direction_bits(inward.y, 10u) | direction_bits(inward.z, 20u);
-  store3(end == PHOTON_ASIDE ? (float3)(0.0f) : power, flight->power);
+  store3(end == PHOTON_MISSED ? (float3)(0.0f) : power, flight->power);
   flight->end = end;
   store3(emitted, flight->emitted);
-  flight->seen = seen;
+  flight->radiance_factor = radiance_factor;
   store3(absorbed, flight->absorbed);
   flight->splat = splat;
 }

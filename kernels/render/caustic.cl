@@ -16,7 +16,7 @@ static inline float3 caustic_irradiance_of(POOL_PARAMS, const Surface* s) {
     return s->caustic.xyz;
   const PhotonPool pool = {photon_nodes, photon_buckets};
   const GatherPlace place = {s->position, s->normal};
-  NO_PHOTONS_YET(near);
+  NEAR_PHOTONS(near);
   nearest_photons(pool, gather_params, place, gather_params->k, INFINITY, INFINITY, &near);
   return s->caustic.xyz + (1.0f - s->caustic.w) * irradiance_of(pool, gather_params, gather_params->k, &near);
 #else

@@ -21,7 +21,7 @@ static inline Hit eye_hit(POOL_PARAMS, __constant RenderParams* params, SampleId
 
 #define LANES_16 ((uint16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 
-/* eye_direction of 16 samples of a pixel from `sample` on, to the same bits; past the last one, of the last. */
+/* eye_direction of 16 samples of a pixel from `sample` on, with bit-identical results; past the last one, of the last. */
 static inline void add_rays(__constant RenderParams* params, uint2 pixel, uint sample, uint last, int group, RayPacket* p) {
   __constant Camera* camera = &params->camera;
   const uint16 id = min(sample + LANES_16, (uint16)(last));

@@ -66,7 +66,7 @@ ALWAYS_INLINE
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 throughput = (float3)(1.0f);
-  ShadowEnds ends = free_ends();
+  OcclusionEnds ends = free_ends();
   uint state = 0u; /* of the automaton of path classes, after the surfaces so far */
   for (uint surfaces = 1u;; ++surfaces) {
     Surface s;

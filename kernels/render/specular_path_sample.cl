@@ -35,7 +35,7 @@ ALWAYS_INLINE
 static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 throughput = (float3)(1.0f);
-  ShadowEnds ends = free_ends();
+  OcclusionEnds ends = free_ends();
   Media media = in_air();
   uint state = 0u;                      /* of the automaton of path classes, after the surfaces so far */
   bool by_chance = true, mirrored = false; /* no sampled light stands for all that the ray meets; the first surface is specular */

@@ -75,7 +75,7 @@ ALWAYS_INLINE
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 throughput = (float3)(1.0f);
-  ShadowEnds ends = free_ends();
+  OcclusionEnds ends = free_ends();
   Media media = in_air();
   RayChoice choice = only_choice();
   const uint most = min(lights.params->most_bounces, MOST_EYE_BOUNCES);

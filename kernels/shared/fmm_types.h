@@ -43,12 +43,12 @@ typedef struct FmmCluster {
 } FmmCluster;
 
 /* What the points of a cluster that face one side, or all, are as one flux vector a colour (MID). Which side it shines
- * to is judged by the flux when the linear operator was frozen; an iteration that is not frozen has it equal to `flux`.
+ * to is decided by the flux at the linearisation point; where that is the current radiosity, both are equal.
  */
 typedef struct FmmFlux {
-  float centre[3];         /* bytes 0-11: centroid weighted by flux */
-  float flux[FMM_VALUES];  /* bytes 12-47: sum of B A n, per colour */
-  float judge[FMM_VALUES]; /* bytes 48-83 */
+  float centre[3];                 /* bytes 0-11: centroid weighted by flux */
+  float flux[FMM_VALUES];          /* bytes 12-47: sum of B A n, per colour */
+  float linearisation[FMM_VALUES]; /* bytes 48-83 */
 } FmmFlux;
 
 #endif

@@ -7,7 +7,7 @@
 typedef struct Photon {
   float position[3]; /* bytes 0-11: root cube */
   pg_uint inward;    /* bytes 12-15: against the normal of the surface, on the side that it came to, packed as below */
-  float power[3];    /* bytes 16-27: times PhotonFlight::seen */
+  float power[3];    /* bytes 16-27: times PhotonFlight::radiance_factor */
   pg_uint splat;     /* bytes 28-31: that it was stored on */
 } Photon;
 
@@ -25,19 +25,19 @@ typedef struct PhotonLeaf {
 #define NO_PHOTON_LEAF 0xffffffffu
 
 /* Photons of one light for one leaf. */
-typedef struct PhotonAim {
+typedef struct EmissionBatch {
   pg_uint first;  /* bytes 0-3: number of its first photon */
   pg_uint count;  /* bytes 4-7 */
-  pg_uint source; /* bytes 8-11: a point or directional light, or AIM_... */
+  pg_uint source; /* bytes 8-11: a point or directional light, or SOURCE_... */
   pg_uint leaf;   /* bytes 12-15 */
   float share; /* bytes 16-19: of what the light sends into the leaf's sphere, for each photon; with equal power: each
                   photon's luminance */
-} PhotonAim;
-#define AIM_EMITTERS 0xfffffffeu
-#define AIM_ENVIRONMENT 0xfffffffdu
+} EmissionBatch;
+#define SOURCE_EMITTERS 0xfffffffeu
+#define SOURCE_ENVIRONMENT 0xfffffffdu
 
 /* How a photon ended. */
-#define PHOTON_ASIDE 0u    /* met another leaf, which sends it itself, or none: it counts for nothing */
+#define PHOTON_MISSED 0u   /* met another leaf, which sends it itself, or none: it counts for nothing */
 #define PHOTON_STORED 1u   /* met a diffuse surface */
 #define PHOTON_ABSORBED 2u /* nothing was left of it */
 #define PHOTON_ESCAPED 3u  /* met nothing any more */
@@ -46,16 +46,16 @@ typedef struct PhotonAim {
 #define PHOTON_MOST_BOUNCES 64u
 
 typedef struct PhotonFlight {
-  float position[3]; /* bytes 0-11: where it was stored, root cube */
-  pg_uint inward;    /* bytes 12-15: as Photon's */
-  float power[3];    /* bytes 16-27: at its end */
-  pg_uint end;       /* bytes 28-31 */
-  float emitted[3];  /* bytes 32-43: power when it set out */
-  float seen; /* bytes 44-47: what the eye makes of its power where it was stored: light of radiance L in glass of
-                 index n is carried as L / n^2 on the eye's way (kernels/materials/materials.cl), so (n where it set out
-                 / n here)^2 */
-  float absorbed[3]; /* bytes 48-59: what its surfaces and glass took on the way, less what chance gave */
-  pg_uint splat;     /* bytes 60-63: that it met last; of the pool */
+  float position[3];     /* bytes 0-11: where it was stored, root cube */
+  pg_uint inward;        /* bytes 12-15: as Photon's */
+  float power[3];        /* bytes 16-27: at its end */
+  pg_uint end;           /* bytes 28-31 */
+  float emitted[3];      /* bytes 32-43: power when it set out */
+  float radiance_factor; /* bytes 44-47: what the eye makes of its power where it was stored: light of radiance L in
+                 glass of index n is carried as L / n^2 on the eye's way (kernels/materials/materials.cl), so (n where
+                 it set out / n here)^2 */
+  float absorbed[3];     /* bytes 48-59: what its surfaces and glass took on the way, less what chance gave */
+  pg_uint splat;         /* bytes 60-63: that it met last; of the pool */
 } PhotonFlight;
 
 /* The map is a left-balanced kd-tree over buckets of PHOTON_LANES photons. Three binary levels make one node of

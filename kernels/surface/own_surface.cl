@@ -4,7 +4,7 @@
 #include "shared/octree_types.h"
 #include "shared/traversal_types.h"
 
-typedef struct ShadowEnds {
+typedef struct OcclusionEnds {
   float3 origin_normal, target_normal; /* facing the ray or not: the side does not matter, the splat's own normal does */
   float origin_radius, target_radius;  /* 0: no surface at that end (a point light, the environment) */
 #ifdef HAS_SPECULAR
@@ -13,10 +13,10 @@ typedef struct ShadowEnds {
   uint origin_through;  /* 1: it came through that surface */
   uint medium;          /* 1 + material of the glass that the ray is in; 0: none */
 #endif
-} ShadowEnds;
+} OcclusionEnds;
 
-static inline ShadowEnds free_ends(void) {
-  ShadowEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
+static inline OcclusionEnds free_ends(void) {
+  OcclusionEnds ends = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f};
 #ifdef HAS_SPECULAR
   ends.origin_material = ends.origin_back = ends.origin_through = ends.medium = 0u;
 #endif
@@ -77,7 +77,7 @@ static inline bool disc_belongs_to_end(float3 end_normal, float end_radius, floa
  * a sheet or the floor that glass stands on, does not stop a ray that is thrown back; one that came through must meet it.
  * Of another material that continues the surface in its plane, discs stick over the edge: a ray that is thrown back does
  * not meet their far sides. */
-static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t, float radius, float4 normal) {
+static inline bool belongs_to_origin(OcclusionEnds ends, float3 direction, float t, float radius, float4 normal) {
   normal.xyz = normal_at_end(ends.origin_normal, ends.origin_radius, direction, t, radius, normal);
   float along = dot3(normal.xyz, direction);
 #ifdef HAS_SPECULAR
@@ -96,7 +96,7 @@ static inline bool belongs_to_origin(ShadowEnds ends, float3 direction, float t,
          !(along < 0.0f && t > ARRIVAL_DISTANCE * radius);
 }
 
-static inline bool belongs_to_ends(ShadowEnds ends, float3 direction, float t_max, float t, float radius,
+static inline bool belongs_to_ends(OcclusionEnds ends, float3 direction, float t_max, float t, float radius,
                                    float4 normal) {
   return disc_belongs_to_end(ends.origin_normal, ends.origin_radius, direction, t, radius, normal) ||
          disc_belongs_to_end(ends.target_normal, ends.target_radius, -direction, t_max - t, radius, normal);

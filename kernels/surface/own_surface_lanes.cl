@@ -16,7 +16,7 @@ static inline lanes_i turned_lanes(float3 end_normal, float end_radius, float3 d
   return sheet_lanes(h) & (cosine < 0.0f) & (distance * fabs(along) < SHEET_HEIGHT * (end_radius + h->radius));
 }
 
-/* belongs_to_end in lanes, to the same answers. `turned`: turned_lanes of the end. */
+/* belongs_to_end in lanes. `turned`: turned_lanes of the end. */
 static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float steepness, lanes_f distance,
                                    lanes_i turned, const BlockHits* h) {
   const lanes_f own_cosine = fma(h->nx, (lanes_f)(end_normal.x),
@@ -42,7 +42,7 @@ static inline lanes_i discs_of_end(float3 end_normal, float end_radius, float st
 
 #ifndef HAS_SPECULAR
 /* belongs_to_origin in lanes. */
-static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const BlockHits* h) {
+static inline lanes_i lanes_of_origin(OcclusionEnds ends, float3 direction, const BlockHits* h) {
   const lanes_i turned = turned_lanes(ends.origin_normal, ends.origin_radius, direction, h->t, h);
   const lanes_f own_along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
   const lanes_f along = select(own_along, -own_along, turned);
@@ -54,7 +54,7 @@ static inline lanes_i lanes_of_origin(ShadowEnds ends, float3 direction, const B
 #else
 /* belongs_to_origin of the lanes that are met, one after another: few are, near the start of a ray, and blocks do not
  * hold materials. */
-static inline lanes_i lanes_of_origin(POOL_PARAMS, ShadowEnds ends, float3 direction, const BlockHits* h, lanes_i met) {
+static inline lanes_i lanes_of_origin(POOL_PARAMS, OcclusionEnds ends, float3 direction, const BlockHits* h, lanes_i met) {
   float t_of[WIDE_LANES];
   uint belong = 0u; /* bit k: lane k does */
   store_lanes(select((lanes_f)(INFINITY), h->t, met), t_of);

@@ -7,7 +7,7 @@
 #include "surface/own_surface.cl"
 
 static inline RayAnswer nearest_of_all(const __global float4* points, uint point_count, const __global RayQuery* ray,
-                                       bool leaves, ShadowEnds ends) {
+                                       bool leaves, OcclusionEnds ends) {
   const float3 origin = load3(ray->origin), direction = load3(ray->direction);
   RayAnswer best = {ray->t_max, NO_SPLAT};
   for (uint k = 0u; k < point_count; ++k) {
@@ -35,6 +35,6 @@ __kernel void brute_force_closest_from(const __global float4* points, uint point
   const uint i = get_global_id(0);
   if (i >= count)
     return;
-  const ShadowEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
+  const OcclusionEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
   answers[i] = nearest_of_all(points, point_count, rays + i, true, ends);
 }

@@ -14,7 +14,7 @@ __kernel void nearest_of_places(const __global PhotonNode* nodes, const __global
                                 __global float* distance2, __global uint* photon, __global uint* found, uint count) {
   const PhotonPool pool = {nodes, buckets};
   const uint k = params->k, first = PHOTON_PLACES_AT_ONCE * get_global_id(0);
-  NO_PHOTONS_YET(near);
+  NEAR_PHOTONS(near);
   float guess2 = INFINITY, hope2 = INFINITY;
   for (uint i = first; i < min(count, first + PHOTON_PLACES_AT_ONCE); ++i) {
     const GatherPlace place = {places[i].xyz, (float3)(0.0f)};

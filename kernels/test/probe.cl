@@ -52,8 +52,8 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[35] = OFFSET(PhotonNode, high);
   sizes[36] = sizeof(PhotonLeaf);
   sizes[37] = OFFSET(PhotonLeaf, first);
-  sizes[38] = sizeof(PhotonAim);
-  sizes[39] = OFFSET(PhotonAim, share);
+  sizes[38] = sizeof(EmissionBatch);
+  sizes[39] = OFFSET(EmissionBatch, share);
   sizes[40] = sizeof(PhotonFlight);
   sizes[41] = OFFSET(PhotonFlight, end);
   sizes[42] = OFFSET(PhotonFlight, absorbed);

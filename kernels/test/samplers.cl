@@ -99,9 +99,9 @@ __kernel void probe_delta_light(LIGHT_PARAMS, float4 position, float4 normal, co
   drawn[2u * i + 1u] = (float4)(sample.irradiance, sample.pdf);
 }
 
-/* A photon of each aim, its first: drawn[3 i] = its origin, drawn[3 i + 1] = its direction, drawn[3 i + 2] = its power. With
+/* A photon of each batch, its first: drawn[3 i] = its origin, drawn[3 i + 1] = its direction, drawn[3 i + 2] = its power. With
  * `looks` it looks for light from a specular splat. */
-__kernel void probe_emission(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global PhotonAim* aims,
+__kernel void probe_emission(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global EmissionBatch* batches,
                              const __global PhotonLeaf* leaves, const __global uint* leaf_splats, uint looks,
                              __global float4* drawn, uint count) {
   const uint i = get_global_id(0);
@@ -111,9 +111,9 @@ __kernel void probe_emission(POOL_PARAMS, LIGHT_PARAMS, const __global float4* r
   const SampleId id = {(uint2)(i, 0x20000000u), 0u, params->seed, 0u};
   Emission e;
   if (looks != 0u)
-    e = look_for_light(POOL_ARGS, from, aims + i, 0u, id);
+    e = look_for_light(POOL_ARGS, from, batches + i, 0u, id);
   else
-    e = emit_photon(POOL_ARGS, from, aims + i, 0u, id);
+    e = emit_photon(POOL_ARGS, from, batches + i, 0u, id);
   drawn[3u * i] = (float4)(e.ray.origin, 0.0f);
   drawn[3u * i + 1u] = (float4)(e.ray.direction, 0.0f);
   drawn[3u * i + 2u] = (float4)(e.power, 0.0f);

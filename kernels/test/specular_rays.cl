@@ -21,7 +21,7 @@ __kernel void trace_specular_rays(POOL_PARAMS, const __global Material* material
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
 #endif
-  ShadowEnds ends = free_ends();
+  OcclusionEnds ends = free_ends();
   Media media = in_air();
   float traced = 0.0f, t = INFINITY;
   uint surfaces = 0u;

@@ -114,7 +114,7 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
 }
 
 /* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
-static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   Hit best = {ray.t_max, NO_SPLAT};
   float t_enter, t_leave;
   if (!ray_meets_root(ray, &t_enter, &t_leave))
@@ -138,7 +138,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 }
 
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
-static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   float t_enter, t_leave;
   if (!ray_meets_root(ray, &t_enter, &t_leave))
     return false;

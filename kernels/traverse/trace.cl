@@ -31,7 +31,7 @@ __kernel void trace_closest_from_rays(POOL_PARAMS, const __global RayQuery* rays
   const uint i = get_global_id(0);
   if (i >= count)
     return;
-  const ShadowEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
+  const OcclusionEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
   const Hit hit = trace_closest_from(POOL_ARGS, ray_of_query(rays + i, step_delta), ends);
   answers[i].t = hit.t;
   answers[i].splat = hit.splat;

@@ -18,7 +18,7 @@
 #define MAX_RIMS 16 /* rims, one behind another, that a ray passes; the last one then counts */
 
 /* trace_closest, or trace_closest_from in programs whose rays also leave surfaces: one walk in the code, not two. */
-static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
 #ifdef BOUNCED_RAYS
   return trace_closest_from(POOL_ARGS, ray, ends);
 #else
@@ -36,7 +36,7 @@ static inline uint facing_side(POOL_PARAMS, uint splat, float3 direction) {
 }
 
 /* Whether the back of the disc `centre` is a rim that sticks out. */
-static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 centre) {
+static inline bool sticks_out(POOL_PARAMS, Ray ray, OcclusionEnds ends, float4 centre) {
   float distance;
   const Ray to_middle = rim_ray(ray, centre, &distance);
   const Hit hit = trace_closest_of(POOL_ARGS, to_middle, ends);
@@ -50,7 +50,7 @@ static inline bool sticks_out(POOL_PARAMS, Ray ray, ShadowEnds ends, float4 cent
 #ifdef HAS_SPECULAR
 /* The next hit within `reach` behind `hit`, as if the ray had come through the surface there: what lies in the same plane,
  * before or behind it by rounding, is met. */
-static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float reach) {
+static inline Hit hit_behind(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit, float reach) {
   const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
   ends.origin_normal = normal.xyz;
   ends.origin_radius = pool_point_texel(POINT_TEXELS * hit.splat).w;
@@ -65,13 +65,13 @@ static inline Hit hit_behind(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, flo
   return behind;
 }
 
-static inline bool is_of_medium(POOL_PARAMS, ShadowEnds ends, uint splat) {
+static inline bool is_of_medium(POOL_PARAMS, OcclusionEnds ends, uint splat) {
   return (uint)pool_point_texel(POINT_TEXELS * splat + 1u).w + 1u == ends.medium;
 }
 
 /* Where glass stands on something, the two planes are one: rounding must not say which of them a ray in the glass meets. It
  * meets the glass. */
-static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
+static inline Hit glass_first(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit) {
   if (ends.medium == 0u || hit.splat == NO_SPLAT || is_of_medium(POOL_ARGS, ends, hit.splat))
     return hit;
   const Hit behind = hit_behind(POOL_ARGS, ray, ends, hit, SEGMENT_MARGIN(pool_point_texel(POINT_TEXELS * hit.splat).w));
@@ -81,7 +81,7 @@ static inline Hit glass_first(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit) {
 
 /* The nearest hit that counts for a viewer, `hit` being the ray's nearest of all: goes on past rims that stick out. A sheet
  * has no backs. Adds the rays traced to *rays. */
-static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, float* rays) {
+static inline Hit visible_hit(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit, float* rays) {
   Ray rest = ray;
   for (int k = 0; k < MAX_RIMS; ++k) {
     if (hit.splat == NO_SPLAT)
@@ -110,7 +110,7 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, fl
 
 /* The surface that a viewer sees, `hit` being the ray's nearest hit of all: overlapping splats near the first that counts
  * are blended (kernels/surface/blend.cl). `ends`: of the surface that the ray leaves, or free. Adds the rays traced to *rays. */
-static inline bool blended_surface(POOL_PARAMS, Ray ray, ShadowEnds ends, Hit hit, Surface* surface, float* rays) {
+static inline bool blended_surface(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit, Surface* surface, float* rays) {
 #ifdef HAS_SPECULAR
   hit = glass_first(POOL_ARGS, ray, ends, hit);
 #endif

@@ -1,7 +1,7 @@
 /* The rays of 2 x 2 pixels from one origin through the wide form at once, in vectors of 16: for eye rays, on devices whose
  * work-items have vector registers of their own. A node is tested once for all rays, by bounds of their inverse
  * directions; a block of splats once, against the sides of the frustum around each half of a pixel; a splat meets only
- * those halves whose frustum it reaches into. Answers are those of trace_closest to the bit. */
+ * those halves whose frustum it reaches into. Answers are bit-identical to those of trace_closest. */
 #include "traverse/traversal.cl"
 
 #define PACKET_GROUPS (PACKET_RAYS / 16) /* half pixels, each a vector of rays */

@@ -133,7 +133,7 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
 }
 
 /* trace_closest of a ray that leaves a surface: what belongs to that does not count (belongs_to_origin). */
-static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   Hit best = {ray.t_max, NO_SPLAT};
   const WideRay wide = wide_ray(ray);
   WALK_FROM_ROOT(walk);
@@ -157,7 +157,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, ShadowEnds ends) {
 }
 
 /* Whether anything but the surfaces at the ray's two ends is hit in (ray.t_min, ray.t_max). */
-static inline bool trace_any(POOL_PARAMS, Ray ray, ShadowEnds ends) {
+static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   const WideRay wide = wide_ray(ray);
   const float at_origin = steepness_at_end(ends.origin_normal, ray.direction);
   const float at_target = steepness_at_end(ends.target_normal, ray.direction);

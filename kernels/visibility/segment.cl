@@ -2,7 +2,7 @@
 #include "traverse/traversal.cl"
 
 /* Whether something stands between two points. The splats of the pools block, all but those of the surfaces at the two
- * ends (ShadowEnds). Points in one place see each other. */
+ * ends (OcclusionEnds). Points in one place see each other. */
 static inline bool segment_blocked(POOL_PARAMS, const __global OctreePoint* from, const __global OctreePoint* to,
                                    float step_delta) {
   Ray ray;
@@ -18,6 +18,6 @@ static inline bool segment_blocked(POOL_PARAMS, const __global OctreePoint* from
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
 #endif
-  const ShadowEnds ends = {load3(from->normal), load3(to->normal), from->radius, to->radius};
+  const OcclusionEnds ends = {load3(from->normal), load3(to->normal), from->radius, to->radius};
   return trace_any(POOL_ARGS, ray, ends);
 }

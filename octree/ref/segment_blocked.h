@@ -4,7 +4,7 @@
 
 namespace pointgi {
 
-/// Whether a disc stands between the centres of two splats, besides those of the surfaces at its ends (ShadowEnds of
+/// Whether a disc stands between the centres of two splats, besides those of the surfaces at its ends (OcclusionEnds of
 /// kernels/lib/ray.cl), in double precision. O(n).
 bool segment_blocked(View<Splat> splats, const Splat& from, const Splat& to);
 

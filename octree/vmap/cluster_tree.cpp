@@ -75,7 +75,8 @@ struct Moments {
   }
 };
 
-/// Largest and smallest of what is measured from the means; their order of computation does not matter to the bit.
+/// Largest and smallest of what is measured from the means; their order of computation does not matter: the result is
+/// bit-identical.
 struct Extent {
   double radius2 = 0.0;
   double chord2 = 0.0; ///< of a normal's end from the axis' end: precise where the arc cosine is not

@@ -41,7 +41,7 @@ struct Exchange {
     std::vector<double> b, h;
     for (const Splat& s : map.tree.points)
       b.insert(b.end(), 3, radiosity(s));
-    fmm.apply(b, Judge::now, h);
+    fmm.apply(b, LinearisationPoint::current, h);
     return h;
   }
 

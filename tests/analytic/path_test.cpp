@@ -112,7 +112,7 @@ TEST_CASE("direct light alone is the renderer's own picture") {
   const Picture direct = render_text(scene + "[radiosity]\nmethod = \"none\"\n"), paths = trace(scene, "LE,LDE");
   for (const char* channel : {"R", "G", "B", "Z", "N.X", "Albedo.R", "Variance.B"}) {
     CAPTURE(channel);
-    CHECK(paths.channels.at(channel) == direct.channels.at(channel)); // the same samples: to the bit
+    CHECK(paths.channels.at(channel) == direct.channels.at(channel)); // the same samples: bit-identical
   }
   CHECK(largest(paths, "Diffuse.R") == 0.0);
   check_same(direct, trace(scene, "LE,LDE", 2)); // others: within noise

@@ -84,7 +84,7 @@ Field solve(RadiosityOperator& exchange, const test::LitRoom& room, View<std::ui
   options.tolerance = tolerance;
   const Solution solution = solve_radiosity(exchange, emission, albedo, area, options);
   if (solution.end != SolveEnd::converged) std::printf("warning: %s\n", complaint_of(solution).c_str());
-  exchange.apply(solution.radiosity, Judge::now, h);
+  exchange.apply(solution.radiosity, LinearisationPoint::current, h);
   Field field{std::vector<double>(3 * n), std::vector<double>(3 * n), solution.applies + 1};
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t c = 0; c < 3; ++c) {

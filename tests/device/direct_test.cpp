@@ -54,7 +54,7 @@ struct Traced {
   std::vector<double> irradiance(View<double> radiosity, const DirectOptions& options = {}) const {
     DeviceDirect direct(session(), pools, variant, splats, options);
     std::vector<double> h;
-    direct.apply(radiosity, Judge::now, h);
+    direct.apply(radiosity, LinearisationPoint::current, h);
     return h;
   }
 };
@@ -114,16 +114,17 @@ TEST_CASE("direct on the device: linear, and the same bits again") {
   DeviceDirect direct(session(), scene.pools, scene.variant, scene.splats, {});
   const auto b = varied_radiosity(scene.splats);
   std::vector<double> h, again, turned(b);
-  direct.apply(b, Judge::now, h);
-  direct.apply(b, Judge::before, again);
+  direct.apply(b, LinearisationPoint::current, h);
+  direct.apply(b, LinearisationPoint::kept, again);
   CHECK(h == again);
   for (double& value : turned)
     value = -value;
-  direct.apply(turned, Judge::before, again);
+  direct.apply(turned, LinearisationPoint::kept, again);
   for (double& value : again)
     value = -value;
   CHECK(h == again);
-  CHECK_THROWS_AS(direct.apply(View<double>(b.data(), b.size() - 1), Judge::now, h), std::invalid_argument);
+  CHECK_THROWS_AS(direct.apply(View<double>(b.data(), b.size() - 1), LinearisationPoint::current, h),
+                  std::invalid_argument);
 }
 
 TEST_CASE("direct on the device: what does not fit is refused with what is wanted, what there is, and what to do") {
@@ -140,6 +141,6 @@ TEST_CASE("direct on the device: what does not fit is refused with what is wante
   }
   DeviceDirect none(session(), scene.pools, scene.variant, View<Splat>(), {});
   std::vector<double> h{1.0};
-  none.apply(View<double>(), Judge::now, h);
+  none.apply(View<double>(), LinearisationPoint::current, h);
   CHECK(h.empty());
 }

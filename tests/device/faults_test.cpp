@@ -131,7 +131,7 @@ TEST_CASE("radiosity has the same bits where the device refuses large launches",
       return fails ? CL_MEM_OBJECT_ALLOCATION_FAILURE : CL_SUCCESS;
     });
     std::vector<double> h;
-    fmm.apply(b, Judge::now, h);
+    fmm.apply(b, LinearisationPoint::current, h);
     device.inject_faults({});
     CHECK((refused > 0) == (most_items < 1'000'000));
     return h;

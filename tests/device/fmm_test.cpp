@@ -45,8 +45,8 @@ TEST_CASE("fmm on the device equals its twin") {
       REQUIRE(device.points() == twin.points());
       const auto b = varied_radiosity(tree.points);
       std::vector<double> expected, h;
-      twin.apply(b, Judge::now, expected);
-      device.apply(b, Judge::now, h);
+      twin.apply(b, LinearisationPoint::current, expected);
+      device.apply(b, LinearisationPoint::current, h);
       // Float: 1e-7 of places in the cube is 1e-4 of the distance of the nearest splats, whose share is small.
       CHECK(relative_l2(h, expected) < 2e-5);
       double worst = 0.0, largest = 0.0;
@@ -60,8 +60,8 @@ TEST_CASE("fmm on the device equals its twin") {
       std::vector<double> other(b.rbegin(), b.rend());
       for (std::size_t k = 0; k < other.size(); k += 2)
         other[k] = -other[k];
-      twin.apply(other, Judge::before, expected);
-      device.apply(other, Judge::before, h);
+      twin.apply(other, LinearisationPoint::kept, expected);
+      device.apply(other, LinearisationPoint::kept, h);
       CHECK(relative_l2(h, expected) < 5e-5);
     }
 }
@@ -72,10 +72,10 @@ TEST_CASE("fmm on the device: the same bits again, and a furnace") {
   DeviceFmm device(session(), tree, links, {});
   const auto b = varied_radiosity(tree.points);
   std::vector<double> first, again;
-  device.apply(b, Judge::now, first);
-  DeviceFmm(session(), tree, links, {}).apply(b, Judge::now, again);
+  device.apply(b, LinearisationPoint::current, first);
+  DeviceFmm(session(), tree, links, {}).apply(b, LinearisationPoint::current, again);
   CHECK(first == again);
-  device.apply(b, Judge::now, again); // launches of another size by now
+  device.apply(b, LinearisationPoint::current, again); // launches of another size by now
   CHECK(first == again);
 
   const std::vector<double> emission(b.size(), 1.0), albedo(b.size(), 0.9);
@@ -100,8 +100,8 @@ TEST_CASE("fmm time", "[.]") {
     const auto b = varied_radiosity(tree.points);
     std::vector<double> h;
     const auto before = session().kernel_times();
-    device.apply(b, Judge::now, h);
-    device.apply(b, Judge::now, h);
+    device.apply(b, LinearisationPoint::current, h);
+    device.apply(b, LinearisationPoint::current, h);
     double node_pairs = 0;
     for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
       for (std::uint32_t e = device.lists().far.begin[k]; e < device.lists().far.begin[k + 1]; ++e)

@@ -102,7 +102,7 @@ TEST_CASE("every photon's power is accounted for") {
   }
 }
 
-TEST_CASE("photons are the same to the bit however they are cut into launches, and others with another seed") {
+TEST_CASE("photons are bit-identical however they are cut into launches, and others with another seed") {
   const PhotonScene scene(all_of_it);
   const auto points = scene.points();
   const SpecularLeaves leaves = specular_leaves(

@@ -66,7 +66,7 @@ std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::ve
 }
 
 /// Rays that find another splat, unless both lie at exactly one distance, or a t further off than 1e-5. (Both kernels
-/// round alike, so t should in fact agree to the bit on one device.)
+/// round alike, so t should in fact be bit-identical on one device.)
 std::size_t differences(const std::vector<RayAnswer>& a, const std::vector<RayAnswer>& b) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {

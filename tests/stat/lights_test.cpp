@@ -203,12 +203,12 @@ struct Emitted {
 constexpr float leaf_radius = 0.08f;
 const Vector3d leaf_centre(0.55, 0.3, 0.45);
 
-/// First photons of `samples` aims from that source to the leaf, a photon each.
+/// First photons of `samples` batches from that source to the leaf, a photon each.
 std::vector<Emitted> emit(const LightScene& lights, const std::vector<Emitter>& emitters, cl_uint source, bool looks,
                           const Vector3d& centre = leaf_centre) {
-  std::vector<PhotonAim> aims;
+  std::vector<EmissionBatch> batches;
   for (cl_uint i = 0; i < samples; ++i)
-    aims.push_back({i, 1, source, 0, 1.0f});
+    batches.push_back({i, 1, source, 0, 1.0f});
   PhotonLeaf leaf{};
   for (int c = 0; c < 3; ++c)
     leaf.centre[c] = static_cast<float>(centre[c]);
@@ -224,7 +224,7 @@ std::vector<Emitted> emit(const LightScene& lights, const std::vector<Emitter>& 
   const auto drawn = device.allocate<cl_float4>(3 * samples);
   cl::Kernel kernel = sampler("probe_emission");
   device.launch(kernel, LaunchShape::line(samples), lights.pools.nodes, lights.pools.leaves, lights.pools.points,
-                lights.field, sent.arguments(), device.upload(radiance), device.upload(aims),
+                lights.field, sent.arguments(), device.upload(radiance), device.upload(batches),
                 device.upload(std::vector<PhotonLeaf>{leaf}), device.upload(std::vector<cl_uint>{0}),
                 static_cast<cl_uint>(looks), drawn, static_cast<cl_uint>(samples));
   const auto values = device.download(drawn, 3 * samples);
@@ -284,7 +284,7 @@ TEST_CASE("photons of the environment come from all sides alike and are even ove
   const LightScene lights;
   EvenSquares places({1.0}, 12), directions({1.0}, 12);
   double off_power = 0.0;
-  for (const Emitted& photon : emit(lights, lights.lighting.emitters, AIM_ENVIRONMENT, false)) {
+  for (const Emitted& photon : emit(lights, lights.lighting.emitters, SOURCE_ENVIRONMENT, false)) {
     const Vector3d towards = -photon.direction, from_centre = photon.origin - leaf_centre;
     count_in_cone(directions, 0, Vector3d(0.6, 0.0, 0.8), 2.0, towards);
     count_in_disc(places, 0, towards.normalized(), double{leaf_radius},
@@ -303,7 +303,7 @@ TEST_CASE("photons of emitting splats: splat by power, place even on the disc, d
   const std::vector<double> shares = lights.shares(emitters, [&](const Emitter& e) { return lights.power(e); });
   EvenSquares places(shares), directions(shares);
   double off_power = 0.0;
-  for (const Emitted& photon : emit(lights, emitters, AIM_EMITTERS, false)) {
+  for (const Emitted& photon : emit(lights, emitters, SOURCE_EMITTERS, false)) {
     const std::size_t k = lights.under(emitters, photon.origin);
     const Emitter& e = emitters[k];
     const double last = height_of_leaf(leaf_centre, photon.origin);
@@ -342,7 +342,7 @@ TEST_CASE(
   }
   EvenSquares places(shares), directions(sides);
   double off_power = 0.0;
-  for (const Emitted& photon : emit(lights, specular, AIM_EMITTERS, true)) {
+  for (const Emitted& photon : emit(lights, specular, SOURCE_EMITTERS, true)) {
     const std::size_t k = lights.under(specular, photon.origin);
     const Emitter& e = specular[k];
     count_in_disc(places, k, lights.normal(e), lights.radius(e), photon.origin - lights.centre(e));

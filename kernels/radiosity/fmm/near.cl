@@ -8,7 +8,7 @@ static inline void receive_mid(Receivers* r, const __global FmmFlux* source, fmm
   const fmm_lanes facing = max(r->nx * dx + r->ny * dy + r->nz * dz, 0.0f);
   const fmm_lanes scale = -INVERSE_PI * share * facing * inverse * inverse;
   const __global float* q = source->flux;
-  const __global float* j = source->judge;
+  const __global float* j = source->linearisation;
   r->red += scale * select((fmm_lanes)(0.0f), q[0] * dx + q[1] * dy + q[2] * dz, j[0] * dx + j[1] * dy + j[2] * dz < 0.0f);
   r->green += scale * select((fmm_lanes)(0.0f), q[3] * dx + q[4] * dy + q[5] * dz, j[3] * dx + j[4] * dy + j[5] * dz < 0.0f);
   r->blue += scale * select((fmm_lanes)(0.0f), q[6] * dx + q[7] * dy + q[8] * dz, j[6] * dx + j[7] * dy + j[8] * dz < 0.0f);

@@ -32,7 +32,7 @@ std::vector<double> errors_of_orders(const std::vector<Splat>& splats, unsigned 
     fmm.lists.direct_below = 0.0;
     FmmOperator exchange(tree, links, fmm);
     REQUIRE(exchange.lists().far.source.size() > 1000); // or there is nothing to see
-    exchange.apply(b, Judge::now, h);
+    exchange.apply(b, LinearisationPoint::current, h);
     std::vector<double> at_some;
     for (const std::uint32_t i : some)
       at_some.insert(at_some.end(), h.begin() + 3 * i, h.begin() + 3 * i + 3);
@@ -120,6 +120,6 @@ TEST_CASE("each point's own share of a source, against the sum of its pairs with
   const auto truth =
       direct_sum(tree.points, b, all, [&](std::uint32_t i, std::uint32_t j) { return of_pair[i * n + j]; });
   std::vector<double> h;
-  exchange.apply(b, Judge::now, h);
+  exchange.apply(b, LinearisationPoint::current, h);
   CHECK(relative_l2(h, truth) < 1e-12); // the same sums in another order
 }

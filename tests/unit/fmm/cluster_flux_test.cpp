@@ -41,7 +41,7 @@ TEST_CASE("a cube seen from afar sends what its faces do, which as one flux woul
   }
   FmmOperator exchange(tree, std::vector<Link>{{cube, sheet, 1.0f, LinkKind::mid, no_point_shares}}, {}, {});
   std::vector<double> h;
-  exchange.apply(b, Judge::now, h);
+  exchange.apply(b, LinearisationPoint::current, h);
   std::vector<std::uint32_t> receivers;
   for (std::uint32_t i = 600; i < tree.points.size(); ++i)
     receivers.push_back(i);

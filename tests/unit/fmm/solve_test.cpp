@@ -52,13 +52,13 @@ TEST_CASE("mid links: the linear operator agrees with the one that judges, and a
   FmmOperator exchange(tree, links, {});
   const auto b = varied_radiosity(tree.points);
   std::vector<double> now, before, minus = b, negative;
-  CHECK_THROWS_AS(exchange.apply(b, Judge::before, now), std::invalid_argument);
-  exchange.apply(b, Judge::now, now);
-  exchange.apply(b, Judge::before, before);
+  CHECK_THROWS_AS(exchange.apply(b, LinearisationPoint::kept, now), std::invalid_argument);
+  exchange.apply(b, LinearisationPoint::current, now);
+  exchange.apply(b, LinearisationPoint::kept, before);
   CHECK(now == before);
   for (double& value : minus)
     value = -value;
-  exchange.apply(minus, Judge::before, negative);
+  exchange.apply(minus, LinearisationPoint::kept, negative);
   for (double& value : negative)
     value = -value;
   CHECK(negative == now);

@@ -70,7 +70,7 @@ TEST_CASE("a V-map comes back as it was kept, and a second run asks nothing") {
   CHECK_THROWS_AS(kept_or_made_links(k.tree, k.splats, silent, k.options, "somebody else"), std::logic_error);
 }
 
-TEST_CASE("whatever links hang on is part of the key") {
+TEST_CASE("whatever links depend on is part of the key") {
   const Kept& k = kept();
   const auto differs = [&](const ClusterTree& tree, const std::vector<Splat>& splats, const LinkOptions& options) {
     return vmap_key(tree, splats, options, "a linear scan") != k.key;

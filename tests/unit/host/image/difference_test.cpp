@@ -141,7 +141,7 @@ TEST_CASE("pixels that are not finite are left out and counted") {
   CHECK(d.all.mse == 0.0);
 }
 
-TEST_CASE("structural similarity is that of its definition, and does not hang on the exposure") {
+TEST_CASE("structural similarity is that of its definition, and does not depend on the exposure") {
   const int width = 23, height = 17;
   std::vector<float> a, b;
   for (int y = 0; y < height; ++y)

@@ -63,7 +63,7 @@ TEST_CASE("variants say why they are not valid") {
   CHECK_THAT(why_not(v, plain), Contains("gives 32"));
 }
 
-TEST_CASE("options hang on what a kernel reads, fast math on the kernels that may have it") {
+TEST_CASE("options depend on what a kernel reads, fast math on the kernels that may have it") {
   TraversalVariant v = plain_variant(TraversalForm::step);
   v.group = {16, 4};
   CHECK_THAT(shade_program(v, {}).options, Contains("GROUP_X=16") && Contains("GROUP_Y=4"));

@@ -68,15 +68,15 @@ EmissionOptions options_of(std::uint64_t photons, bool equal_power = false, std:
   return options;
 }
 
-/// The aims follow one another; photons of each source and leaf.
+/// The batches follow one another; photons of each source and leaf.
 std::map<std::pair<pg_uint, pg_uint>, double> counts_of(const EmissionPlan& plan) {
   std::map<std::pair<pg_uint, pg_uint>, double> counts;
   pg_uint next = 0;
-  for (const PhotonAim& aim : plan.aims) {
-    REQUIRE(aim.first == next);
-    REQUIRE(aim.count > 0);
-    next += aim.count;
-    counts[{aim.source, aim.leaf}] += aim.count;
+  for (const EmissionBatch& batch : plan.batches) {
+    REQUIRE(batch.first == next);
+    REQUIRE(batch.count > 0);
+    next += batch.count;
+    counts[{batch.source, batch.leaf}] += batch.count;
   }
   REQUIRE(next == plan.photons);
   return counts;
@@ -116,8 +116,8 @@ TEST_CASE("a leaf gets photons by what the light sends into its sphere") {
   CHECK(all >= 100'000);
   CHECK(all <= 400'001);
   CHECK(counts.begin()->second == Approx(all * first / (first + second)).margin(1.01));
-  for (const PhotonAim& aim : plan.aims) // the photons of a pair have the whole of its light
-    CHECK(aim.share * static_cast<float>(aim.count) == Approx(1.0).epsilon(1e-6));
+  for (const EmissionBatch& batch : plan.batches) // the photons of a pair have the whole of its light
+    CHECK(batch.share * static_cast<float>(batch.count) == Approx(1.0).epsilon(1e-6));
 }
 
 TEST_CASE("a leaf that no segment reaches gets an eighth, or nothing where power is equal") {
@@ -151,8 +151,8 @@ TEST_CASE("photons of equal power each carry an equal share of the flux through 
   const EmissionPlan plan = plan_emission(scene.leaves, scene.points, sources, all_see, options_of(10'000, true));
   CHECK(plan.photons == 10'000);
   const double flux = 3.0 * pi * (0.0004 / 0.25 + 0.0025 * 0.5 / std::sqrt(0.34) / 0.34); // SA = pi r² cos / d²
-  for (const PhotonAim& aim : plan.aims)
-    CHECK(aim.share * 10'000.0 == Approx(flux).epsilon(1e-5));
+  for (const EmissionBatch& batch : plan.batches)
+    CHECK(batch.share * 10'000.0 == Approx(flux).epsilon(1e-5));
 }
 
 TEST_CASE("where less than one photon falls on a leaf, chance makes the mean right") {
@@ -164,9 +164,9 @@ TEST_CASE("where less than one photon falls on a leaf, chance makes the mean rig
   std::vector<double> sums(100);
   constexpr int seeds = 400;
   for (std::uint32_t seed = 0; seed < seeds; ++seed)
-    for (const PhotonAim& aim :
-         plan_emission(scene.leaves, scene.points, sources, all_see, options_of(25, false, seed)).aims)
-      sums[aim.leaf] += static_cast<double>(aim.share) * aim.count;
+    for (const EmissionBatch& batch :
+         plan_emission(scene.leaves, scene.points, sources, all_see, options_of(25, false, seed)).batches)
+      sums[batch.leaf] += static_cast<double>(batch.share) * batch.count;
   // Each leaf's light is sent once on the mean over seeds: one photon in four plans at the least, so that 400 of them
   // are off by sqrt(3 / 400) = 9 %; of 100 leaves, four times that.
   double all = 0.0;
@@ -200,7 +200,7 @@ TEST_CASE("no photons from no light, to no leaf, or where none are wanted; a lam
   PhotonSources lamp;
   add_lamp(two, lamp, 0.5f, -1.0f);
   auto counts = counts_of(plan_emission(two.leaves, two.points, lamp, all_see, options_of(100'000)));
-  CHECK(counts[{AIM_EMITTERS, 1}] == Approx(0.05 * counts[{AIM_EMITTERS, 0}]).epsilon(0.001));
+  CHECK(counts[{SOURCE_EMITTERS, 1}] == Approx(0.05 * counts[{SOURCE_EMITTERS, 0}]).epsilon(0.001));
 }
 
 TEST_CASE("as many photons as may be asked for have numbers") {
@@ -210,7 +210,7 @@ TEST_CASE("as many photons as may be asked for have numbers") {
   PhotonSources sources;
   sources.delta = {delta_light(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 1.0f)};
   const EmissionPlan plan = plan_emission(scene.leaves, scene.points, sources, all_see, options_of(100'000'000));
-  REQUIRE(plan.aims.size() == 1);
+  REQUIRE(plan.batches.size() == 1);
   CHECK(plan.photons == 400'000'000);
-  CHECK(plan.aims[0].count == plan.photons);
+  CHECK(plan.batches[0].count == plan.photons);
 }
