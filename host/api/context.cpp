@@ -1,9 +1,20 @@
 #include "host/api/parts.h"
+#include "host/run.h"
 #include "host/tune/self_test.h"
 
 namespace pointgi::api {
 
-Context::Context(const std::string& device) : parts_(new Parts{Session(choose_tested_device(device)), StageLog()}) {}
+namespace {
+
+Device tested_device(const std::string& device, const RunControl& run) {
+  const RunScope scope(run);
+  return choose_tested_device(device);
+}
+
+} // namespace
+
+Context::Context(const std::string& device, const RunControl& run)
+    : parts_(new Parts{Session(tested_device(device, run)), StageLog()}) {}
 
 const std::string& Context::device() const {
   return parts_->session.info().name;

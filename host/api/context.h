@@ -1,5 +1,6 @@
 #pragma once
 /// A device at work.
+#include "host/run_control.h"
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,10 +11,11 @@ namespace pointgi::api {
 /// does. One thread at a time may use a context and what was made with it; different contexts are independent.
 class Context {
 public:
-  /// `device`: an index of devices(), "cpu", "gpu", or a part of a name; empty: the first GPU if there is one, else the
-  /// first CPU device. Compiled programs are kept in $POINTGI_CACHE_DIR, else ~/.cache/pointgi.
-  /// Throws Error(device), whose text lists what there is.
-  explicit Context(const std::string& device = {});
+  /// `device`: an index of devices(), "cpu", "gpu", or a part of a name; empty: the GPU with the most memory that
+  /// passes a test, else a CPU device; `run`'s log hears which GPUs did not pass. Compiled programs are kept in
+  /// $POINTGI_CACHE_DIR, else ~/.cache/pointgi. Throws Error(device), whose text lists what there is, also where a
+  /// device that was named does not pass.
+  explicit Context(const std::string& device = {}, const RunControl& run = {});
 
   /// Name of the device.
   const std::string& device() const;

@@ -66,7 +66,7 @@ std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting, 
     return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
   };
   std::uint64_t hash = fnv1a(bytes(points_of(pools)), fnv1a(settings));
-  hash = fnv1a(bytes(lighting.delta), hash);
+  hash = fnv1a(bytes(lighting.light_sources), hash);
   hash = fnv1a(bytes(lighting.materials), hash);
   if (lighting.sky != nullptr) {
     const SkyMap frame = device_sky_map(*lighting.sky);

@@ -44,7 +44,8 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
   }
 }
 
-std::vector<float> Light::radiosity() const {
+std::vector<float> Light::radiosity(const RunControl& run) const {
+  const RunScope scope(run);
   const LitCloud lit = parts_->lit_cloud(0.0);
   std::vector<float> radiosity(3 * lit.cloud.size());
   for (std::size_t i = 0; i < radiosity.size(); ++i)
@@ -52,7 +53,8 @@ std::vector<float> Light::radiosity() const {
   return radiosity;
 }
 
-void Light::write_ply(const std::string& file, double exposure) const {
+void Light::write_ply(const std::string& file, double exposure, const RunControl& run) const {
+  const RunScope scope(run);
   const LitCloud lit = parts_->lit_cloud(exposure);
   pointgi::write_ply(file, lit.cloud, lit.columns);
 }

@@ -56,13 +56,13 @@ public:
   explicit Light(const Prepared& prepared, const LightOptions& options = {}, const RunControl& run = {});
 
   /// [size x 3, W/m²], RGB, in the order of Prepared::positions(): what leaves the front of each point after emission
-  /// or diffuse reflection of direct light and of light from surfaces; 0 of mirrors and glass.
+  /// or diffuse reflection of direct light and of light from surfaces; 0 of mirrors, metals and glass.
   /// Throws Error(device), and Error(usage) for light that was not solved (path_tracing).
-  std::vector<float> radiosity() const;
+  std::vector<float> radiosity(const RunControl& run = {}) const;
 
   /// The points with their normals, radii, radiosity and colours as a PLY file, as `pointgi bake` writes it. `exposure`
   /// brightens the colours, in stops. Throws as radiosity(), and Error(output).
-  void write_ply(const std::string& file, double exposure = 0.0) const;
+  void write_ply(const std::string& file, double exposure = 0.0, const RunControl& run = {}) const;
 
   struct Parts; ///< for the library itself
   const std::shared_ptr<Parts>& parts() const { return parts_; }

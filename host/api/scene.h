@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,8 +16,8 @@ namespace pointgi::api {
 class Value {
 public:
   Value(bool value) : value_(value) {}
-  Value(int value) : value_(static_cast<long long>(value)) {}
-  Value(long long value) : value_(value) {}
+  template <typename Integer, std::enable_if_t<std::is_integral_v<Integer> && !std::is_same_v<Integer, bool>, int> = 0>
+  Value(Integer value) : value_(static_cast<long long>(value)) {}
   Value(double value) : value_(value) {}
   Value(const char* text) : value_(std::string(text)) {}
   Value(std::string text) : value_(std::move(text)) {}

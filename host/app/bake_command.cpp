@@ -33,7 +33,7 @@ ExitCode run_bake(const BakeOptions& options) {
   const api::Scene scene = checked_scene(options);
   const Scene description = scene.parts()->description();
   begun.finish(description.clouds.size() + description.shapes.size(), "objects");
-  const api::Context context = open_context(options, std::move(begun));
+  const api::Context context = open_context(options, std::move(begun), run.control());
   StageLog& stages = context.parts()->stages;
   const api::Prepared prepared(context, scene, run.control());
   const bool specular = prepared.parts()->ready.lighting.has_specular();
@@ -43,7 +43,7 @@ ExitCode run_bake(const BakeOptions& options) {
   stages.skip("photon", specular ? "a lit cloud holds no caustics" : "no specular material");
   stages.skip("render", "a lit cloud is no picture: it has no camera");
   stages.start("bake");
-  light.write_ply(options.output, description.render.exposure);
+  light.write_ply(options.output, description.render.exposure, run.control());
   stages.finish(prepared.size(), "points");
   if (!options.stats_file.empty()) {
     Stats stats = stats_of(*light.parts());

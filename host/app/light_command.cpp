@@ -10,8 +10,8 @@ std::vector<std::string> overrides_of(const LightOptions& options) {
   return overrides;
 }
 
-api::Context open_context(const LightOptions& options, StageLog&& begun) {
-  api::Context context(options.device);
+api::Context open_context(const LightOptions& options, StageLog&& begun, const RunControl& run) {
+  api::Context context(options.device, run);
   context.parts()->stages = std::move(begun);
   const DeviceInfo& info = context.parts()->session.info();
   spdlog::info("device: {} ({}, driver {})", info.name, info.platform, info.driver);

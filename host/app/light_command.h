@@ -10,7 +10,7 @@ namespace pointgi {
 std::vector<std::string> overrides_of(const LightOptions& options);
 
 /// The device that the flags ask for, which the log names; the stages that have begun before go on in it.
-api::Context open_context(const LightOptions& options, StageLog&& begun);
+api::Context open_context(const LightOptions& options, StageLog&& begun, const RunControl& run);
 
 /// What both have to say of a run until now; `light` must live as long.
 Stats stats_of(const api::Light::Parts& light);

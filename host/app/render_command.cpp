@@ -131,7 +131,7 @@ ExitCode run_render(const RenderOptions& options) {
   film.paths = options.paths;
   stages.finish(description.clouds.size() + description.shapes.size(), "objects");
 
-  const api::Context context = open_context(options, std::move(stages));
+  const api::Context context = open_context(options, std::move(stages), run.control());
   api::Context::Parts& device = *context.parts();
   device.session.dump_kernels_to(options.dump_folder);
   if (!options.trace_file.empty()) device.session.record_launches();

@@ -87,12 +87,12 @@ bool find_normals(PointCloud& cloud, const Sites& sites, const CompleteOptions& 
   return false;
 }
 
-struct Facing {
+struct FacingCheck {
   double openness = 0;    ///< |sum of A n| / sum of A: 0 for a closed surface, 1 for a plane
   double outwardness = 0; ///< sum of A n.(x - c) / sum of A |x - c|: 1 for a sphere, -1 when it faces inwards
 };
 
-Facing facing(const PointCloud& cloud, const Sites& sites) {
+FacingCheck facing(const PointCloud& cloud, const Sites& sites) {
   double area = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), vector_area = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -112,7 +112,7 @@ Facing facing(const PointCloud& cloud, const Sites& sites) {
 }
 
 void turn_inside_out_if_inward(PointCloud& cloud, const Sites& sites, CloudReport& report) {
-  const Facing f = facing(cloud, sites);
+  const FacingCheck f = facing(cloud, sites);
   if (f.openness > closed_openness || f.outwardness > inward_outwardness) return;
   turn_round(cloud);
   report.normals_from += ", flipped";

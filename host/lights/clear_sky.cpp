@@ -9,7 +9,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 /// One sample of the spectrum, 10 nm wide.
-struct Band {
+struct SpectralBand {
   double wavelength; ///< nm
   double sun;        ///< extraterrestrial radiance of the sun [W/m²/nm/sr] (Preetham et al., table 2)
   double ozone;      ///< absorption [1/m]
@@ -18,7 +18,7 @@ struct Band {
 };
 
 // clang-format off
-constexpr Band bands[] = {
+constexpr SpectralBand bands[] = {
     {380, 16559, 0, 0, 0.001368, 3.9e-05, 0.00645},
     {390, 16233.7, 0, 0, 0.004243, 0.00012, 0.02005},
     {400, 21127.5, 0, 0, 0.01431, 0.000396, 0.06785},
@@ -83,7 +83,7 @@ struct Transmittance {
   double haze_scattering, haze_absorption; ///< whose product is `haze`
 };
 
-Transmittance through(const Band& band, double mass, double turbidity) {
+Transmittance through(const SpectralBand& band, double mass, double turbidity) {
   const double micrometres = 1e-3 * band.wavelength;
   const double haze = (0.04608 * turbidity - 0.04586) * std::pow(micrometres, -1.3) * mass;
   const double scattered = 0.945 * std::exp(-0.095 * std::pow(std::log(micrometres / 0.4), 2)); // of what haze takes
@@ -105,7 +105,7 @@ ClearSkyLight clear_sky_light(double turbidity, double sun_elevation_deg) {
   if (!(sun_elevation_deg > 0.0)) return light;
   const double mass = air_mass(90.0 - sun_elevation_deg), cosine = std::sin(sun_elevation_deg * pi / 180.0);
   const double downward = forward_share(cosine);
-  for (const Band& band : bands) {
+  for (const SpectralBand& band : bands) {
     const Transmittance t = through(band, mass, turbidity);
     const double sun = band.sun * sun_solid_angle * band_nm * lumens_per_watt;
     light.beam += sun * t.air * t.haze * t.gases * Vector3d(band.x, band.y, band.z);

@@ -10,13 +10,12 @@ void load(const TableReader& table, const LightContext&, LightSettings& light) {
   if (direction.norm() < limits::length.low)
     table.fail("direction", "expected the way the light travels, found a vector of no length");
   light.vector = -direction.normalized();
-  light.is_far = true;
   light.strength = table.need_vector3("irradiance", limits::light);
 }
 
 } // namespace
 
 extern const LightKind directional_kind;
-const LightKind directional_kind{{"direction", "irradiance"}, load};
+const LightKind directional_kind{{"direction", "irradiance"}, load, true};
 
 } // namespace pointgi

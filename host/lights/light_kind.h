@@ -15,8 +15,9 @@ struct LightContext {
 
 struct LightKind {
   std::vector<std::string> keys; ///< beside `type`
-  /// Reads these keys into everything of `light` but its type and place. Throws Error(input).
+  /// Reads these keys into everything of `light` but its type, place and distance. Throws Error(input).
   void (*load)(const TableReader& table, const LightContext& context, LightSettings& light);
+  bool is_far; ///< parallel light from outside the scene
 };
 
 /// The row of a kind.

@@ -16,9 +16,19 @@ constexpr limits::NumberRange turbidity_range{lowest_turbidity, highest_turbidit
                                               "from 2 (very clear air) to 10 (thick haze)"};
 constexpr double clear_air = 3.0, grass = 0.2;
 
+/// A date is a text, or one of TOML's own, which stands without quotes.
+std::string date_text(const TableReader& table) {
+  const toml::node* node = table.find("date");
+  const auto* date = node != nullptr ? node->as_date() : nullptr;
+  if (date == nullptr) return table.need_text("date", date_words);
+  return fmt::format("{:04d}-{:02d}-{:02d}", date->get().year, date->get().month, date->get().day);
+}
+
 DateTime time_of(const TableReader& table) {
-  const auto date = parse_date(table.need_text("date", date_words));
+  const auto date = parse_date(date_text(table));
   if (!date) table.fail("date", std::string("expected ") + date_words + ", found " + found_text(*table.find("date")));
+  if (const toml::node* node = table.find("time"); node != nullptr && node->is_time())
+    table.fail("time", std::string("expected ") + zoned_time_words + ", found a time without a zone");
   const auto time = parse_zoned_time(table.need_text("time", zoned_time_words));
   if (!time)
     table.fail("time", std::string("expected ") + zoned_time_words + ", found " + found_text(*table.find("time")));
@@ -39,7 +49,6 @@ void load(const TableReader& table, const LightContext& context, LightSettings& 
                                fmt::format(": the sun is {:.1f} degrees below the horizon then, it gives no light; is "
                                            "the time's offset from UTC right?",
                                            -sun.elevation_deg));
-  light.is_far = true;
   light.vector = model.towards_sun;
   light.strength = model.sun_irradiance;
   light.sine2 = std::pow(std::sin(0.5 * sun_diameter_deg * 3.14159265358979323846 / 180.0), 2);
@@ -51,6 +60,7 @@ void load(const TableReader& table, const LightContext& context, LightSettings& 
 } // namespace
 
 extern const LightKind sun_kind;
-const LightKind sun_kind{{"date", "time", "latitude", "longitude", "north_deg", "turbidity", "ground_albedo"}, load};
+const LightKind sun_kind{
+    {"date", "time", "latitude", "longitude", "north_deg", "turbidity", "ground_albedo"}, load, true};
 
 } // namespace pointgi

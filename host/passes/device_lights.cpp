@@ -4,7 +4,7 @@
 namespace pointgi {
 
 std::vector<cl::Memory> DeviceLights::arguments() const {
-  std::vector<cl::Memory> all{params.handle, materials.handle, delta.handle, emitters.handle};
+  std::vector<cl::Memory> all{params.handle, materials.handle, light_sources.handle, emitters.handle};
   if (sky) all.insert(all.end(), {sky->map.handle, sky->rows.handle, sky->columns.handle, sky->texels.handle});
   return all;
 }
@@ -13,7 +13,7 @@ DeviceLights upload_lights(Session& session, const DeviceLighting& lighting, con
                            bool with_map) {
   DeviceLights lights{session.upload(&params, 1),
                       session.upload(lighting.materials),
-                      session.upload(lighting.delta),
+                      session.upload(lighting.light_sources),
                       session.upload(lighting.emitters),
                       {}};
   if (with_map && lighting.sky != nullptr) {

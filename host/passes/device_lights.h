@@ -17,7 +17,7 @@ struct DeviceSky {
 struct DeviceLights {
   Buffer<RenderParams> params;
   Buffer<Material> materials;
-  Buffer<DeltaLight> delta;
+  Buffer<LightSource> light_sources;
   Buffer<Emitter> emitters;
   std::optional<DeviceSky> sky; ///< for programs that are built with HAS_SKY_MAP
 

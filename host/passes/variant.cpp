@@ -22,7 +22,7 @@ std::string group_options(WorkGroup group) {
 
 std::string light_options(unsigned lights) {
   if (lights == 0) return {};
-  std::string options = " -D HAS_DELTA_LIGHTS";
+  std::string options = " -D HAS_LIGHT_SOURCES";
   if ((lights & SIZED_LIGHTS) != 0) options += " -D HAS_LIGHT_DISCS";
 #define OPTION(ID, name)                                                                                               \
   options += (lights >> LIGHT_##ID & 1u) != 0 ? " -D WITH_LIGHT_" #ID "=1" : " -D WITH_LIGHT_" #ID "=0";

@@ -85,7 +85,7 @@ Program pairs_program(const TraversalVariant& variant);
 /// are measured by. `some_paths`: params.path_states leaves some out.
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);
 
-/// Radiosity: a file of kernels/fmm; nothing in it depends on the traversal.
+/// Radiosity: a file of kernels/radiosity/fmm or kernels/radiosity/direct; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
 
 /// Where photons set out.

@@ -1,4 +1,5 @@
 #include "host/photon/emission_plan.h"
+#include "host/lights/light_kind.h"
 #include "host/photon/mixed_bits.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -26,6 +27,10 @@ Vector vector(const float v[3]) {
 }
 double luminance(const float c[3]) {
   return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+}
+
+bool is_far(const LightSource& light) {
+  return kind_of(static_cast<LightType>(light.type)).is_far;
 }
 
 /// A source as it is seen from a leaf: luminance of its flux, root cube units.
@@ -96,8 +101,8 @@ public:
       emitted_ += luminance(sources.radiance[e].data()) * points[sources.emitters[e].point].area;
     for (std::size_t k = 0; k < leaves.leaves.size(); ++k) {
       const auto leaf = static_cast<pg_uint>(k);
-      for (std::size_t s = 0; s < sources.delta.size(); ++s)
-        pairs_.push_back({static_cast<pg_uint>(s), leaf, from_delta(sources.delta[s], leaf_of(leaves, k))});
+      for (std::size_t s = 0; s < sources.light_sources.size(); ++s)
+        pairs_.push_back({static_cast<pg_uint>(s), leaf, from_source(sources.light_sources[s], leaf_of(leaves, k))});
       if (emitted_ > 0.0) pairs_.push_back({SOURCE_EMITTERS, leaf, from_emitters(leaf_of(leaves, k))});
       if (sources.has_environment())
         pairs_.push_back({SOURCE_ENVIRONMENT, leaf,
@@ -112,9 +117,8 @@ public:
   }
 
 private:
-  Flux from_delta(const DeltaLight& light, const Leaf& leaf) const {
-    const Flux flux =
-        light.type == LIGHT_POINT ? leaf.from_point(vector(light.vector)) : leaf.from_direction(vector(light.vector));
+  Flux from_source(const LightSource& light, const Leaf& leaf) const {
+    const Flux flux = is_far(light) ? leaf.from_direction(vector(light.vector)) : leaf.from_point(vector(light.vector));
     return scaled(flux, luminance(light.strength));
   }
 
@@ -141,8 +145,8 @@ private:
   /// Where light of the pair's source for a splat of its leaf comes from.
   Splat origin(const Pair& pair, std::size_t k, const Splat& target) const {
     if (pair.source == SOURCE_EMITTERS) return points_[emitters_[k * emitter_samples / segments_a_pair]];
-    const DeltaLight& light = sources_.delta[pair.source];
-    if (light.type == LIGHT_POINT) return free_point(vector(light.vector));
+    const LightSource& light = sources_.light_sources[pair.source];
+    if (!is_far(light)) return free_point(vector(light.vector));
     return free_point(vector(target.position) + 2.0 * vector(light.vector)); // outside the root cube
   }
 

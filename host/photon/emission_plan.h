@@ -9,7 +9,7 @@ namespace pointgi {
 
 /// What sends photons, as the device has it.
 struct PhotonSources {
-  std::vector<DeltaLight> delta;
+  std::vector<LightSource> light_sources;
   std::vector<Emitter> emitters;              ///< chosen by their shares; all of them are one source
   std::vector<std::array<float, 4>> radiance; ///< of each emitter's front, scaled; [3] 0
   std::array<float, 3> environment{};         ///< radiance from every direction, of a map the mean, scaled

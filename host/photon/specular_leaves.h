@@ -1,5 +1,5 @@
 #pragma once
-/// What photons are aimed at: clusters of splats of mirror, glass or Phong material (method.md §5).
+/// What photons are aimed at: clusters of splats of specular materials (method.md §5).
 #include "octree/splat.h"
 #include "octree/view.h"
 #include "shared/photon_types.h"

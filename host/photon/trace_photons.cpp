@@ -108,10 +108,10 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   params.seed += request.flight * 0x9e3779b9u;
   params.step_delta = static_cast<float>(request.variant.step_delta / request.side);
   std::copy_n(request.sources.environment.begin(), 3, params.environment);
-  params.delta_lights = static_cast<pg_uint>(request.sources.delta.size());
+  params.light_sources = static_cast<pg_uint>(request.sources.light_sources.size());
   params.emitters = static_cast<pg_uint>(request.sources.emitters.size());
   DeviceLights lights = upload_lights(session, request.lighting, params, from_map(request));
-  lights.delta = session.upload(request.sources.delta);
+  lights.light_sources = session.upload(request.sources.light_sources);
   lights.emitters = session.upload(request.sources.emitters);
   const auto radiance = session.upload(request.sources.radiance);
   const auto batches = session.upload(request.plan.batches);
@@ -150,7 +150,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
 
 PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points) {
   PhotonSources sources;
-  sources.delta = lighting.delta;
+  sources.light_sources = lighting.light_sources;
   sources.emitters = lighting.emitters;
   for (const Emitter& emitter : lighting.emitters) {
     const float* e = lighting.materials[static_cast<std::size_t>(points[emitter.point].material)].emission;
@@ -165,7 +165,7 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
                            const Buffer<cl_float4>& normal_field, const CausticSettings& settings, double side,
                            const FlightControl& control) {
   const bool equal_power = settings.power == "equal";
-  const std::size_t lights = sources.delta.size() + 2;
+  const std::size_t lights = sources.light_sources.size() + 2;
   const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), most_photon_pairs / lights, equal_power);
   const auto ask = [&](View<Splat> table, View<Segment> segments) {
     const auto step_delta = static_cast<float>(variant.step_delta / side);

@@ -37,8 +37,8 @@ void DeviceDirect::make_bands(const DirectOptions& options) {
 }
 
 template <class Launch>
-void DeviceDirect::in_windows(const Band& of_rows, const Band& of_columns, std::size_t group, Pace& pace,
-                              const Launch& launch) {
+void DeviceDirect::in_windows(const VisibilityRows& of_rows, const VisibilityRows& of_columns, std::size_t group,
+                              Pace& pace, const Launch& launch) {
   const double busy = static_cast<double>(busy_work_items(session_.info())) / static_cast<double>(group);
   for (cl_uint row = of_rows.first; row < of_rows.end;) {
     // So many rows h that h (w + h), more than lie below the diagonal, is a launch's work.
@@ -65,8 +65,8 @@ void DeviceDirect::trace(const DevicePools& pools, const TraversalVariant& varia
   Pace pace{2e4}; // tiles
   double done = 0.0;
   const double all = 0.5 * tiles_ * (tiles_ + 1.0);
-  for (const Band& of_rows : bands_)
-    for (const Band& of_columns : bands_) {
+  for (const VisibilityRows& of_rows : bands_)
+    for (const VisibilityRows& of_columns : bands_) {
       if (of_columns.first > of_rows.first) break;
       in_windows(of_rows, of_columns, variant.group.size(), pace,
                  [&](cl_uint column, cl_uint columns, cl_uint row, cl_uint rows) {
@@ -109,7 +109,7 @@ void DeviceDirect::apply(View<double> radiosity, LinearisationPoint, std::vector
   const auto flux = session_.upload(flux_planes(radiosity, points_, stride_));
   const std::size_t group = session_.info().is_cpu ? 8 : 32;
   const auto sources = static_cast<cl_uint>(points_.size());
-  for (const Band& band : bands_)
+  for (const VisibilityRows& band : bands_)
     for_each_batch(EqualItems{band.end - band.first}, rows_, {}, [&](std::size_t first, std::size_t count) {
       const double seconds =
           session_.launch(receive_, LaunchShape::line(count, group), band.first + static_cast<cl_uint>(first),

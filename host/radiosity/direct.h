@@ -37,7 +37,7 @@ public:
 
 private:
   /// Rows of tiles in one piece of memory, [first, end).
-  struct Band {
+  struct VisibilityRows {
     Buffer<cl_uchar> bits;
     cl_uint first = 0, end = 0;
   };
@@ -48,13 +48,14 @@ private:
   /// Calls launch(column, columns, row, rows), which returns the device's seconds, for windows that cover the tiles on
   /// and below the diagonal. `group`: work-items a tile.
   template <class Launch>
-  void in_windows(const Band& of_rows, const Band& of_columns, std::size_t group, Pace& pace, const Launch& launch);
+  void in_windows(const VisibilityRows& of_rows, const VisibilityRows& of_columns, std::size_t group, Pace& pace,
+                  const Launch& launch);
 
   Session& session_;
   std::vector<ExchangePoint> points_;
   cl_uint tiles_ = 0; ///< a row: blocks of FMM_LANES points
   cl_uint stride_ = 0;
-  std::vector<Band> bands_;
+  std::vector<VisibilityRows> bands_;
   Buffer<cl_float> point_buffer_, irradiance_;
   cl::Kernel receive_;
   Pace rows_{1.0}; ///< rows of receive_from_all

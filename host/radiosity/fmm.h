@@ -1,5 +1,5 @@
 #pragma once
-/// H(B) by the fast multipole method on the device (method.md section 4; kernels/fmm).
+/// H(B) by the fast multipole method on the device (method.md section 4; kernels/radiosity/fmm).
 #include "fmm/operators/fmm_operator.h"
 #include "host/cl/batches.h"
 #include "host/cl/session.h"

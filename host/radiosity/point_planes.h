@@ -1,5 +1,5 @@
 #pragma once
-/// Points as the kernels of kernels/fmm read them: a number of all points after another.
+/// Points as the kernels of kernels/radiosity/fmm read them: a number of all points after another.
 #include "fmm/operators/point_pair.h"
 #include "host/cl/session.h"
 #include "octree/view.h"

@@ -181,19 +181,19 @@ bool some_path(const LightPaths& paths, const PathSupply& scene) {
 
 std::string why_no_path(const std::string& list, const std::optional<int>& max_depth, const PathSupply& scene) {
   const LightPaths all = light_paths(list, {}), paths = light_paths(list, max_depth);
-  if (some_path(paths, scene) || !(scene.area_lights || scene.delta_lights)) return {};
+  if (some_path(paths, scene) || !(scene.area_lights || scene.light_sources)) return {};
   if (some_path(all, scene))
     return "render.max_depth = " + std::to_string(*max_depth) +
            " leaves out paths of more surface points; make it larger, or leave it out";
   PathSupply more = scene;
   more.specular = more.lobes = true;
   if (!scene.specular && some_path(all, more))
-    return "no surface of it is specular (S); give one a material of type mirror, glass or phong, or name other "
-           "classes";
+    return "no surface of it is specular (S); give one a material of type mirror, conductor, glass or phong, or "
+           "name other classes";
   more = scene;
   more.area_lights = true;
   if (some_path(all, more))
-    return "its point and directional lights are not seen, neither by the eye nor by way of mirrors and glass; use an "
+    return "its [[light]]s are not seen, neither by the eye nor by way of mirrors and glass; use an "
            "emitting surface or an environment";
   more = scene;
   more.diffuse = true;

@@ -27,11 +27,11 @@ LightPaths light_paths(const std::string& list, const std::optional<int>& max_de
 
 /// What a scene can make light paths of. One of the two kinds of light is there.
 struct PathSupply {
-  bool diffuse = false;      ///< some surface reflects light diffusely
-  bool specular = false;     ///< a mirror, glass or a Phong lobe is there
-  bool lobes = false;        ///< a Phong lobe is: it shows point and directional lights, too
-  bool area_lights = false;  ///< surfaces shine, or the environment does: the eye sees them, also in mirrors
-  bool delta_lights = false; ///< point and directional lights: only D and lobes show them
+  bool diffuse = false;       ///< some surface reflects light diffusely
+  bool specular = false;      ///< a mirror, glass or a Phong lobe is there
+  bool lobes = false;         ///< a Phong lobe is: it shows point and directional lights, too
+  bool area_lights = false;   ///< surfaces shine, or the environment does: the eye sees them, also in mirrors
+  bool light_sources = false; ///< point and directional lights: only D and lobes show them
 };
 
 /// Why no path of `list` with at most `max_depth` surface points, as light_paths() takes them, can be in such a scene,

@@ -29,8 +29,8 @@ RadianceScale choose_scale(const Scene& scene, const Frame& frame) {
   return {largest > 0.0 ? std::exp2(std::round(std::log2(largest))) : 1.0};
 }
 
-DeltaLight device_light(const LightSettings& settings, const Frame& frame, double scale) {
-  DeltaLight light{};
+LightSource device_light(const LightSettings& settings, const Frame& frame, double scale) {
+  LightSource light{};
   light.type = static_cast<pg_uint>(settings.type);
   copy3(settings.is_far ? settings.vector : (settings.vector - frame.origin) / frame.side, light.vector);
   copy3(cube_strength(settings, frame) / scale, light.strength);
@@ -152,12 +152,12 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   for (std::size_t m = 0; m < scene.materials.size() && all_emitted > 0.0; ++m)
     result.materials[m].emitter_density = static_cast<float>(power[m] / all_emitted);
   for (const LightSettings& entry : scene.lights) {
-    const DeltaLight light = device_light(entry, frame, scale);
+    const LightSource light = device_light(entry, frame, scale);
     if (!(light.strength[0] + light.strength[1] + light.strength[2] > 0.0f)) continue;
-    result.delta.push_back(light);
+    result.light_sources.push_back(light);
     result.light_types |= 1u << light.type;
   }
-  accumulate_shares(result.delta, [&](const DeltaLight& l) {
+  accumulate_shares(result.light_sources, [&](const LightSource& l) {
     return luminance.dot(Vector3d(l.strength[0], l.strength[1], l.strength[2])) + 1e-30;
   });
   RenderParams& params = result.params;
@@ -168,7 +168,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   params.seed = scene.render.seed;
   params.jitter = scene.render.jitter ? 1u : 0u;
   params.most_bounces = scene.render.max_depth ? static_cast<pg_uint>(*scene.render.max_depth) : NO_BOUNCE_LIMIT;
-  params.delta_lights = static_cast<pg_uint>(result.delta.size());
+  params.light_sources = static_cast<pg_uint>(result.light_sources.size());
   params.emitters = static_cast<pg_uint>(result.emitters.size());
   result.has_environment = scene.sky != nullptr || scene.environment.maxCoeff() > 0.0;
   return result;

@@ -14,14 +14,14 @@ struct RadianceScale {
 
 struct DeviceLighting {
   RadianceScale radiance;
-  RenderParams params{};           ///< everything but step_delta
-  std::vector<Material> materials; ///< one a material of the scene
-  std::vector<DeltaLight> delta;   ///< point and directional lights with power > 0
-  std::vector<Emitter> emitters;   ///< splats of emitting materials
+  RenderParams params{};                  ///< everything but step_delta
+  std::vector<Material> materials;        ///< one a material of the scene
+  std::vector<LightSource> light_sources; ///< [[light]]s that shine
+  std::vector<Emitter> emitters;          ///< splats of emitting materials
   bool has_environment = false;
   std::shared_ptr<const EnvironmentMap> sky; ///< the environment's map, not yet scaled; null: params.environment alone
 
-  bool has_light() const { return !delta.empty() || !emitters.empty() || has_environment; }
+  bool has_light() const { return !light_sources.empty() || !emitters.empty() || has_environment; }
   /// Whether some splat's material, not only some material, has this flag (MATERIAL_...).
   bool has_flag(pg_uint flag) const { return (flags & flag) != 0; }
   bool has_specular() const { return has_flag(MATERIAL_SPECULAR); }

@@ -30,6 +30,7 @@ std::vector<LightSettings> load_lights(const TableReader& root, UpAxis up, std::
     LightSettings& light = lights.emplace_back();
     light.type = type_called(table.typed(no_common_keys, typed_keys()));
     light.place = table.place();
+    light.is_far = kind_of(light.type).is_far;
     kind_of(light.type).load(table, {up, warnings}, light);
   }
   return lights;

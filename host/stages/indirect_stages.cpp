@@ -13,20 +13,19 @@ namespace {
 /// Estimates of the direct light of a point that is seen only by what it sends on: the many senders of a receiver
 /// average out what the estimates of each scatter.
 constexpr int indirect_light_samples = 16;
-/// Lights that are points or far away need one, since nothing of them is chosen at random while they are few.
-constexpr std::size_t sure_lights = 4;
 /// Of light that enters besides, however little.
 constexpr double coarsest_tolerance = 0.1;
 
 unsigned samples_for(const IndirectRequest& request, bool with_emitters) {
   const DeviceLighting& lighting = request.lighting;
+  // Of few lights without a size nothing is chosen at random.
   const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
-                    lighting.delta.size() <= sure_lights;
+                    (lighting.light_types & SIZED_LIGHTS) == 0 && lighting.light_sources.size() <= ALL_LIGHT_SOURCES;
   if (sure) return 1;
   const Scene& scene = request.scene;
   // Light that the picture shows at the points has the samples of a pixel.
-  const int unless_told = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
-  return static_cast<unsigned>(scene.radiosity.light_samples.value_or(unless_told));
+  const int default_samples = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
+  return static_cast<unsigned>(scene.radiosity.light_samples.value_or(default_samples));
 }
 
 /// Progress of a stage, and an end on request, both at every launch of the device.

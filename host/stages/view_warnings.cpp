@@ -30,7 +30,7 @@ std::string suspects(const Scene& scene) {
   }
   if (!scene.lights.empty()) list += "; " + place_of(scene.lights.front());
   if (scene.sky != nullptr || scene.environment.maxCoeff() > 0.0)
-    list += "; what surrounds all else keeps the light of [environment] out";
+    list += "; what surrounds all else keeps the light of the sky out";
   if (scene.render.max_depth)
     list += "; render.max_depth = " + std::to_string(*scene.render.max_depth) + " may leave out too much";
   return list;
@@ -61,7 +61,7 @@ bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedSc
   const DeviceLighting& lighting = ready.lighting;
   const PathSupply supply{has_reflectors(scene, points_of(ready.pools)), lighting.has_specular(),
                           lighting.has_flag(MATERIAL_HAS_LOBE), !lighting.emitters.empty() || lighting.has_environment,
-                          !lighting.delta.empty()};
+                          !lighting.light_sources.empty()};
   const std::string reason = why_no_path(list, scene.render.max_depth, supply);
   if (reason.empty()) return false;
   log_warning("the picture will be black: {}none of the light paths that count can be in this scene: {}",
@@ -76,7 +76,7 @@ bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> d
   return true;
 }
 
-void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool told) {
+void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool already_warned) {
   if (totals.eye_rays_on_splats == 0 && !totals.interrupted && totals.eye_rays > 0) {
     const Vector3d& low = ready.frame.origin;
     log_warning("no eye ray met a splat: the splats lie within {} and {}, the camera is at {}; are the units the same, "
@@ -88,7 +88,7 @@ void warn_of_view(const RenderTotals& totals, const Scene& scene, const Prepared
   if (backs > 0.1)
     log_warning("{:.0f} % of the eye rays that hit a splat met its back, which is black: {}", 100.0 * backs,
                 advice_on_backs(totals, scene));
-  if (totals.lit || totals.interrupted || told || !ready.lighting.has_light()) return;
+  if (totals.lit || totals.interrupted || already_warned || !ready.lighting.has_light()) return;
   if (totals.eye_rays_on_back_faces == totals.eye_rays_on_splats) return; // said above
   const bool reflects = has_reflectors(scene, points_of(ready.pools)) || ready.lighting.has_specular();
   log_warning("the picture is all black: {}", reflects ? "no light reaches what the camera sees: " + suspects(scene)

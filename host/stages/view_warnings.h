@@ -15,7 +15,7 @@ bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedSc
 /// empty), each [points x 3].
 bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> direct, View<float> from_surfaces);
 
-/// Warns of a picture that shows no splat, many backs, or that is black; of the last not where `told` why before.
-void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool told);
+/// Warns of a picture that shows no splat, many backs, or that is black; of the last not where `already_warned`.
+void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool already_warned);
 
 } // namespace pointgi

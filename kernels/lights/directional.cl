@@ -2,7 +2,7 @@
 #include "lights/light_sample.cl"
 
 /* As point_sample. */
-static inline float directional_sample(const __global DeltaLight* light, float3 position, float2 u, float3* towards,
+static inline float directional_sample(const __global LightSource* light, float3 position, float2 u, float3* towards,
                                        float* distance, float* pdf) {
   *towards = load3(light->vector);
   *distance = INFINITY;
@@ -10,7 +10,7 @@ static inline float directional_sample(const __global DeltaLight* light, float3 
   return 1.0f;
 }
 
-static inline PhotonOrigin directional_emit(const __global DeltaLight* light, float2 u) {
+static inline PhotonOrigin directional_emit(const __global LightSource* light, float2 u) {
   const PhotonOrigin origin = {load3(light->vector), true, load3(light->strength)};
   return origin;
 }

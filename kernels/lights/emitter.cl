@@ -16,7 +16,7 @@ static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global 
   const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
   float3 towards = centre.xyz + r * cos(phi) * a + r * sin(phi) * b - s->position;
   /* Not nearer than a tenth of the disc: the estimate of a light that touches the surface stays finite. */
-  const float d2 = fmax(dot3(towards, towards), 0.01f * area);
+  const float exact2 = dot3(towards, towards), d2 = fmax(exact2, 0.01f * area);
   sample->distance = sqrt(d2);
   towards /= sample->distance;
   const float cosine = dot3(s->normal, towards), cosine_at_light = -dot3(normal.xyz, towards);
@@ -26,7 +26,7 @@ static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global 
   sample->normal = normal.xyz;
   sample->radius = centre.w;
 #ifdef HAS_LOBES
-  sample->pdf = material->emitter_density * d2 / cosine_at_light;
+  sample->pdf = material->emitter_density * exact2 / cosine_at_light;
 #endif
   return share > 0.0f && cosine > 0.0f && cosine_at_light > 0.0f &&
          !is_own_far_side(s->normal, s->radius, towards, sample->distance, centre.w, normal);

@@ -9,7 +9,7 @@
 typedef struct Lights {
   __constant RenderParams* params;
   const __global Material* materials;
-  const __global DeltaLight* delta;
+  const __global LightSource* light_sources;
   const __global Emitter* emitters;
 #ifdef HAS_SKY_MAP
   Sky sky;
@@ -19,8 +19,8 @@ typedef struct Lights {
 /* Kernels take LIGHT_PARAMS and make `Lights` of {LIGHT_ARGS} (host/passes/device_lights.h). */
 #define LIGHT_TABLE_PARAMS                                                            \
   __constant RenderParams *params, const __global Material *materials,                \
-      const __global DeltaLight *delta_lights, const __global Emitter *emitters
-#define LIGHT_TABLE_ARGS params, materials, delta_lights, emitters
+      const __global LightSource *light_sources, const __global Emitter *emitters
+#define LIGHT_TABLE_ARGS params, materials, light_sources, emitters
 #ifdef HAS_SKY_MAP
 #define LIGHT_PARAMS                                                                                                 \
   LIGHT_TABLE_PARAMS, __constant SkyMap *sky_map, const __global SkyRow *sky_rows, const __global float *sky_columns, \

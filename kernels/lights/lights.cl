@@ -1,6 +1,6 @@
 /* Light that reaches a surface straight from its source, by shadow rays: the kinds of light that are compiled in.
- *   HAS_DELTA_LIGHTS  the scene has a [[light]]
- *   WITH_LIGHT_<ID>   of each kind of shared/light_kinds.h, where HAS_DELTA_LIGHTS: 1 where the scene has it, else 0
+ *   HAS_LIGHT_SOURCES  the scene has a [[light]]
+ *   WITH_LIGHT_<ID>   of each kind of shared/light_kinds.h, where HAS_LIGHT_SOURCES: 1 where the scene has it, else 0
  *   HAS_LIGHT_DISCS   one of them has a size (SIZED_LIGHTS)
  *   HAS_EMITTERS      some splats may shine
  *   HAS_ENVIRONMENT   the environment may shine
@@ -12,9 +12,6 @@
 #include "lights/sky.cl"
 #include "lights/sun.cl"
 #include "materials/materials.cl"
-
-/* Up to this many [[light]]s are all asked for every ray; of more, one, drawn in proportion to its strength. */
-#define ALL_DELTA_LIGHTS 4u
 
 /* Use of random numbers at a vertex beside 1 to 3 for the kinds of light and those of kernels/render/eye_sample.cl (4 to 6). */
 #define DIMENSION_SECOND_SKY 7u
@@ -49,24 +46,24 @@ static inline bool in_light(POOL_PARAMS, const Surface* s, const LightSample* li
   return !trace_any(POOL_ARGS, ray, ends);
 }
 
-#ifdef HAS_DELTA_LIGHTS
+#ifdef HAS_LIGHT_SOURCES
 /* FOR_LIGHT_1(ID, name) is the code of a kind that is compiled in, FOR_LIGHT_0 that of one that is not. */
 #define FOR_LIGHT(with, ID, name) FOR_LIGHT_(with, ID, name)
 #define FOR_LIGHT_(with, ID, name) FOR_LIGHT_##with(ID, name)
 #define FOR_LIGHT_0(ID, name)
 #define SAMPLE_LIGHT(ID, name) FOR_LIGHT(WITH_LIGHT_##ID, ID, name)
 
-/* One [[light]]: number i, or where there are more than ALL_DELTA_LIGHTS one that is drawn. False where the light does not
+/* One [[light]]: number i, or where there are more than ALL_LIGHT_SOURCES one that is drawn. False where the light does not
  * reach the surface's front whatever stands between. */
-static inline bool sample_delta_light(const Surface* s, Lights lights, float4 u, uint i, LightSample* sample) {
-  const uint count = lights.params->delta_lights;
+static inline bool sample_light_source(const Surface* s, Lights lights, float4 u, uint i, LightSample* sample) {
+  const uint count = lights.params->light_sources;
   float share = 1.0f;
-  if (count > ALL_DELTA_LIGHTS) {
-    i = pick(&lights.delta->cumulative, sizeof(DeltaLight) / sizeof(float), count, u.x);
-    share = lights.delta[i].cumulative - (i > 0u ? lights.delta[i - 1u].cumulative : 0.0f);
+  if (count > ALL_LIGHT_SOURCES) {
+    i = pick(&lights.light_sources->cumulative, sizeof(LightSource) / sizeof(float), count, u.x);
+    share = lights.light_sources[i].cumulative - (i > 0u ? lights.light_sources[i - 1u].cumulative : 0.0f);
   }
-  const __global DeltaLight* light = lights.delta + i;
-  const float2 place = count > ALL_DELTA_LIGHTS ? u.zw : u.xy; /* what has not chosen the light is stratified */
+  const __global LightSource* light = lights.light_sources + i;
+  const float2 place = count > ALL_LIGHT_SOURCES ? u.zw : u.xy; /* what has not chosen the light is stratified */
   float falloff = 0.0f, pdf = 0.0f;
   sample->towards = s->normal;
   sample->distance = INFINITY;
@@ -86,7 +83,7 @@ static inline bool sample_delta_light(const Surface* s, Lights lights, float4 u,
 }
 
 /* Where a photon of the light sets out. */
-static inline PhotonOrigin emit_from_light(const __global DeltaLight* light, float2 u) {
+static inline PhotonOrigin emit_from_light(const __global LightSource* light, float2 u) {
   PhotonOrigin origin = {(float3)(0.0f), true, (float3)(0.0f)};
 #define FOR_LIGHT_1(ID, name)     \
   if (light->type == LIGHT_##ID) \
@@ -98,9 +95,9 @@ static inline PhotonOrigin emit_from_light(const __global DeltaLight* light, flo
 #endif
 
 #ifdef HAS_LIGHT_DISCS
-/* Radiance of [[light]] i along a ray that meets nothing, and the density with which sample_delta_light draws its direction. */
+/* Radiance of [[light]] i along a ray that meets nothing, and the density with which sample_light_source draws its direction. */
 static inline float3 light_towards(Lights lights, uint i, float3 direction, float* pdf) {
-  const __global DeltaLight* light = lights.delta + i;
+  const __global LightSource* light = lights.light_sources + i;
   float factor = 0.0f;
   *pdf = 0.0f;
 #define FOR_LIGHT_1(ID, name)     \
@@ -108,8 +105,8 @@ static inline float3 light_towards(Lights lights, uint i, float3 direction, floa
     factor = name##_towards(light, direction, pdf);
   SIZED_LIGHT_KINDS(SAMPLE_LIGHT)
 #undef FOR_LIGHT_1
-  if (lights.params->delta_lights > ALL_DELTA_LIGHTS)
-    *pdf *= light->cumulative - (i > 0u ? lights.delta[i - 1u].cumulative : 0.0f);
+  if (lights.params->light_sources > ALL_LIGHT_SOURCES)
+    *pdf *= light->cumulative - (i > 0u ? lights.light_sources[i - 1u].cumulative : 0.0f);
   return load3(light->strength) * factor;
 }
 #endif
@@ -120,12 +117,12 @@ static inline float3 light_towards(Lights lights, uint i, float3 direction, floa
  * the lobe makes of the lights; a light that rays of the lobe may meet themselves counts by its MIS weight (seen_light). */
 static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, SampleId id, Viewed viewed, float* rays) {
   float3 sum = (float3)(0.0f);
-  uint delta_samples = 0u, emitter_samples = 0u, environment_samples = 0u;
+  uint source_samples = 0u, emitter_samples = 0u, environment_samples = 0u;
 #ifdef HAS_LOBES
   s->highlight = (float3)(0.0f);
 #endif
-#ifdef HAS_DELTA_LIGHTS
-  delta_samples = lights.params->delta_lights <= ALL_DELTA_LIGHTS ? lights.params->delta_lights : 1u;
+#ifdef HAS_LIGHT_SOURCES
+  source_samples = lights.params->light_sources <= ALL_LIGHT_SOURCES ? lights.params->light_sources : 1u;
 #endif
 #ifdef HAS_EMITTERS
   emitter_samples = lights.params->emitters > 0u ? 1u : 0u;
@@ -134,26 +131,26 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
   const float3 sky = load3_constant(lights.params->environment);
   environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? SKY_SAMPLES : 0u;
 #endif
-  for (uint i = 0u; i < delta_samples + emitter_samples + environment_samples; ++i) {
+  for (uint i = 0u; i < source_samples + emitter_samples + environment_samples; ++i) {
 #if defined(HAS_ENVIRONMENT) && defined(HAS_SKY_MAP)
-    const uint second = delta_samples + emitter_samples + 1u; /* of the map's two samples */
-    const float4 u = stratified4(id, i == second ? DIMENSION_SECOND_SKY : i < delta_samples ? 1u : i + 1u < second ? 2u : 3u);
+    const uint second = source_samples + emitter_samples + 1u; /* of the map's two samples */
+    const float4 u = stratified4(id, i == second ? DIMENSION_SECOND_SKY : i < source_samples ? 1u : i + 1u < second ? 2u : 3u);
 #else
-    const float4 u = stratified4(id, i < delta_samples ? 1u : i < delta_samples + emitter_samples ? 2u : 3u);
+    const float4 u = stratified4(id, i < source_samples ? 1u : i < source_samples + emitter_samples ? 2u : 3u);
 #endif
     LightSample light;
     bool faces = false;
-#ifdef HAS_DELTA_LIGHTS
-    if (i < delta_samples)
-      faces = sample_delta_light(s, lights, u, i, &light);
+#ifdef HAS_LIGHT_SOURCES
+    if (i < source_samples)
+      faces = sample_light_source(s, lights, u, i, &light);
 #endif
 #ifdef HAS_EMITTERS
-    if (i >= delta_samples && i < delta_samples + emitter_samples)
+    if (i >= source_samples && i < source_samples + emitter_samples)
       faces = sample_emitter(POOL_ARGS, s, lights.materials, lights.emitters, lights.params->emitters, u, &light);
 #endif
 #ifdef HAS_ENVIRONMENT
-    if (i >= delta_samples + emitter_samples)
-      faces = sample_sky(s, lights, u, i - delta_samples - emitter_samples, &light);
+    if (i >= source_samples + emitter_samples)
+      faces = sample_sky(s, lights, u, i - source_samples - emitter_samples, &light);
 #endif
     if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays)) {
       sum += light.irradiance;

@@ -3,7 +3,7 @@
 
 /* Direction and distance of the light from `position`; *pdf: 0, no ray meets a point. Returns what its strength is multiplied
  * by to give the irradiance of a surface that faces it. */
-static inline float point_sample(const __global DeltaLight* light, float3 position, float2 u, float3* towards,
+static inline float point_sample(const __global LightSource* light, float3 position, float2 u, float3* towards,
                                  float* distance, float* pdf) {
   *towards = load3(light->vector) - position;
   /* A light on the surface itself: finite, and nobody can say which side it is on. */
@@ -14,7 +14,7 @@ static inline float point_sample(const __global DeltaLight* light, float3 positi
   return 1.0f / d2;
 }
 
-static inline PhotonOrigin point_emit(const __global DeltaLight* light, float2 u) {
+static inline PhotonOrigin point_emit(const __global LightSource* light, float2 u) {
   const PhotonOrigin origin = {load3(light->vector), false, load3(light->strength)};
   return origin;
 }

@@ -91,8 +91,8 @@ static inline Emission emit_photon(POOL_PARAMS, PhotonSource from, const __globa
   float3 colour = (float3)(0.0f), origin = (float3)(0.0f), towards = (float3)(0.0f, 0.0f, 1.0f);
   float solid_angle = 1.0f;
   if (batch->source < SOURCE_ENVIRONMENT) {
-#ifdef HAS_DELTA_LIGHTS
-    const PhotonOrigin of_light = emit_from_light(from.lights.delta + batch->source, u.xy);
+#ifdef HAS_LIGHT_SOURCES
+    const PhotonOrigin of_light = emit_from_light(from.lights.light_sources + batch->source, u.xy);
     colour = of_light.strength;
     parallel = of_light.parallel;
     origin = of_light.vector;

@@ -17,7 +17,7 @@ static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __gl
   const float4 centre = pool_point_texel(POINT_TEXELS * point), normal = pool_point_texel(POINT_TEXELS * point + 1u);
   const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
   const uint material = (uint)normal.w;
-  const bool two_sided = has_flag(from.lights.materials + material, MATERIAL_TRANSMITS), inside = two_sided && u.w < 0.5f;
+  const bool transmits = has_flag(from.lights.materials + material, MATERIAL_TRANSMITS), inside = transmits && u.w < 0.5f;
   Emission e;
   e.ray.origin = centre.xyz + disc_point(normal.xyz, sqrt(area * 0.31830989f), u.x, u.y);
   e.ray.direction = cosine_direction(inside ? -normal.xyz : normal.xyz, v.y, u.z);
@@ -32,7 +32,7 @@ static inline Emission look_for_light(POOL_PARAMS, PhotonSource from, const __gl
   e.ends.origin_material = material + 1u;
   e.ends.origin_back = inside ? 1u : 0u;
   e.ends.medium = inside ? material + 1u : 0u;
-  e.power = chosen > 0.0f ? (float3)(3.14159265f * area * (two_sided ? 2.0f : 1.0f) * batch->share / chosen) : (float3)(0.0f);
+  e.power = chosen > 0.0f ? (float3)(3.14159265f * area * (transmits ? 2.0f : 1.0f) * batch->share / chosen) : (float3)(0.0f);
   return e;
 }
 

@@ -107,10 +107,10 @@ static inline void draw_bound(NearPhotons* near, uint k, uint slack) {
   float enough = cut_at(near, near->within2).largest, least = 0.0f; /* the k-th is none smaller */
   for (uint step = 1u; count_enough > k + slack && least < enough; ++step) {
     const int low = as_int(least), high = as_int(enough);
-    const float told = least + (enough - least) * (((float)(k + slack / 2u - count_below) + 0.5f) /
+    const float guess = least + (enough - least) * (((float)(k + slack / 2u - count_below) + 0.5f) /
                                                    (float)(count_enough - count_below));
-    const bool halve = step % 4u == 0u || !(told < enough);
-    const Cut cut = cut_at(near, halve ? as_float(low + (high - low) / 2) : told);
+    const bool halve = step % 4u == 0u || !(guess < enough);
+    const Cut cut = cut_at(near, halve ? as_float(low + (high - low) / 2) : guess);
     if (cut.count < k) {
       least = cut.above;
       count_below = cut.count;

@@ -24,7 +24,7 @@ __kernel void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, __global fl
   if (point >= end)
     return;
   float3 sum = (float3)(0.0f);
-#if defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
+#if defined(HAS_LIGHT_SOURCES) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
   const Lights lights = {LIGHT_ARGS};
   Surface surface = surface_of_point(POOL_ARGS, point);
   float rays = 0.0f;

@@ -15,7 +15,7 @@
 #define SURE_BOUNCES 3u
 
 #if !defined(NO_SHADOW_RAYS) &&                                                                                         \
-    (defined(HAS_DELTA_LIGHTS) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT))
+    (defined(HAS_LIGHT_SOURCES) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT))
 #define HAS_LIGHT
 #endif
 
@@ -53,8 +53,8 @@ static inline void add_diffuse(float3 radiance, float* sums) {
 /* How the ray was chosen that now meets something: densities per solid angle. */
 typedef struct RayChoice {
 #ifdef HAS_LOBES
-  float lobe_pdf; /* of the lobe that has sent the ray out; 0: no sampled light could have found what it meets */
-  float sky_pdf;  /* by the cosine at the surface there, in the ray's direction; 0: no sampled light was from there */
+  float lobe_pdf;   /* of the lobe that has sent the ray out; 0: no sampled light could have found what it meets */
+  float cosine_pdf; /* by the cosine at the surface there, in the ray's direction; 0: no sampled light was from there */
 #endif
   float unused;
 } RayChoice;
@@ -62,7 +62,7 @@ typedef struct RayChoice {
 static inline RayChoice only_choice(void) {
   RayChoice choice;
 #ifdef HAS_LOBES
-  choice.lobe_pdf = choice.sky_pdf = 0.0f;
+  choice.lobe_pdf = choice.cosine_pdf = 0.0f;
 #endif
   choice.unused = 0.0f;
   return choice;
@@ -80,17 +80,17 @@ static inline float share_of_ray(RayChoice choice, float light_pdf) {
 /* What the ray finds that meets nothing. */
 static inline float3 far_light(Lights lights, float3 direction, RayChoice choice) {
 #ifdef HAS_LOBES
-  const SkyLight sky = sky_light(lights, direction, choice.sky_pdf);
+  const SkyLight sky = sky_light(lights, direction, choice.cosine_pdf);
   float3 radiance = sky.radiance * share_of_ray(choice, sky.pdf);
 #else
   float3 radiance = sky_light(lights, direction, 0.0f).radiance;
 #endif
 #ifdef HAS_LIGHT_DISCS
-  for (uint i = 0u; i < lights.params->delta_lights; ++i) {
+  for (uint i = 0u; i < lights.params->light_sources; ++i) {
     float pdf;
     const float3 of_light = light_towards(lights, i, direction, &pdf);
 #ifdef HAS_LOBES
-    pdf = choice.sky_pdf > 0.0f ? pdf : 0.0f;
+    pdf = choice.cosine_pdf > 0.0f ? pdf : 0.0f;
 #endif
     radiance += of_light * share_of_ray(choice, pdf);
   }
@@ -103,9 +103,13 @@ static inline float3 seen_light(Lights lights, bool met, const Surface* s, float
   if (!met)
     return far_light(lights, direction, choice);
 #ifdef HAS_EMITTERS
-  if (s->front)
-    return load3(lights.materials[s->material].emission) *
-           share_of_ray(choice, emitter_pdf(s, lights.materials, direction));
+  if (s->front) {
+    float pdf = emitter_pdf(s, lights.materials, direction);
+#ifdef HAS_LOBES
+    pdf = choice.cosine_pdf > 0.0f ? pdf : 0.0f; /* below the smooth normal no light is sampled */
+#endif
+    return load3(lights.materials[s->material].emission) * share_of_ray(choice, pdf);
+  }
 #endif
   return (float3)(0.0f);
 }

@@ -55,9 +55,7 @@ static inline RayChoice choice_of(const Surface* s, const Scatter* scatter, floa
   RayChoice choice = only_choice();
 #ifdef HAS_LOBES
   choice.lobe_pdf = probability * scatter->pdf;
-#if defined(HAS_ENVIRONMENT) || defined(HAS_LIGHT_DISCS)
-  choice.sky_pdf = sky_cosine_pdf(s->normal, scatter->direction);
-#endif
+  choice.cosine_pdf = sky_cosine_pdf(s->normal, scatter->direction);
 #endif
   return choice;
 }

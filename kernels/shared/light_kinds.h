@@ -16,4 +16,6 @@ enum LightKindNumber { LIGHT_KINDS(LIGHT_KIND_NUMBER) LIGHT_KIND_COUNT };
 
 #define LIGHT_BIT(ID, name) (1u << LIGHT_##ID) |
 #define SIZED_LIGHTS (SIZED_LIGHT_KINDS(LIGHT_BIT) 0u)
+/* Up to this many [[light]]s are all sampled for every ray; of more, one, drawn in proportion to its strength. */
+#define ALL_LIGHT_SOURCES 4u
 #endif

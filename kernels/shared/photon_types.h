@@ -15,7 +15,7 @@ typedef struct Photon {
  * (y) and 20-29 (z): which side of a surface it comes from is all that is asked of it. */
 #define PHOTON_DIRECTION_SCALE 511.0f
 
-/* Splats of mirror, glass or Phong material that photons are aimed at together. */
+/* Splats of specular material (mirror, conductor, glass, Phong) that photons are aimed at together. */
 typedef struct PhotonLeaf {
   float centre[3]; /* bytes 0-11: root cube */
   float radius;    /* bytes 12-15: of a sphere that holds the whole discs */

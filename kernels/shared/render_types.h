@@ -33,16 +33,16 @@ typedef struct Camera {
 #define PATH_GOES_ON 0x20000u                       /* bit 17: some longer path that begins like this counts */
 
 typedef struct RenderParams {
-  Camera camera;        /* bytes 0-63 */
-  float environment[3]; /* bytes 64-75: radiance from every direction, of a map the mean, scaled */
-  pg_uint most_bounces; /* bytes 76-79: no path has more surface points; or NO_BOUNCE_LIMIT. For the path tracer, and
-                           for what others see by way of specular surfaces */
-  pg_uint samples;      /* bytes 80-83: samples a pixel */
-  pg_uint seed;         /* bytes 84-87 */
-  pg_uint jitter;       /* bytes 88-91: 0: samples at the centres of their strata */
-  pg_uint delta_lights; /* bytes 92-95: number of point and directional lights */
-  pg_uint emitters;     /* bytes 96-99: number of emitting splats */
-  float step_delta;     /* bytes 100-103: the absolute-delta variant's delta, root cube units */
+  Camera camera;         /* bytes 0-63 */
+  float environment[3];  /* bytes 64-75: radiance from every direction, of a map the mean, scaled */
+  pg_uint most_bounces;  /* bytes 76-79: no path has more surface points; or NO_BOUNCE_LIMIT. For the path tracer, and
+                            for what others see by way of specular surfaces */
+  pg_uint samples;       /* bytes 80-83: samples a pixel */
+  pg_uint seed;          /* bytes 84-87 */
+  pg_uint jitter;        /* bytes 88-91: 0: samples at the centres of their strata */
+  pg_uint light_sources; /* bytes 92-95: number of point and directional lights */
+  pg_uint emitters;      /* bytes 96-99: number of emitting splats */
+  float step_delta;      /* bytes 100-103: the absolute-delta variant's delta, root cube units */
   pg_uint pad0[2];
   pg_uint path_states[PATH_STATES]; /* bytes 112-623: of the path tracer: the classes of paths that count */
 } RenderParams;
@@ -56,7 +56,7 @@ typedef struct EyeHits {
 } EyeHits;
 
 /* One [[light]]. */
-typedef struct DeltaLight {
+typedef struct LightSource {
   float vector[3];   /* bytes 0-11: point: position, root cube; others: unit vector towards the light */
   pg_uint type;      /* bytes 12-15: LIGHT_<ID> of shared/light_kinds.h */
   float strength[3]; /* bytes 16-27: point: intensity [W/sr] over the cube's side squared; others: irradiance [W/m2] of
@@ -64,7 +64,7 @@ typedef struct DeltaLight {
   float cumulative;  /* bytes 28-31: share of this and all earlier lights in the total, (0,1]; the last is 1 */
   float sine2;       /* bytes 32-35: sine squared of half the angle under which a far light is seen; 0: one direction */
   float pad[3];
-} DeltaLight;
+} LightSource;
 
 typedef struct Emitter {
   pg_uint point;    /* bytes 0-3: index into the point pool */

@@ -30,9 +30,9 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[13] = OFFSET(RenderParams, samples);
   sizes[14] = OFFSET(RenderParams, emitters);
   sizes[15] = OFFSET(RenderParams, step_delta);
-  sizes[16] = sizeof(DeltaLight);
-  sizes[17] = OFFSET(DeltaLight, strength);
-  sizes[18] = OFFSET(DeltaLight, cumulative);
+  sizes[16] = sizeof(LightSource);
+  sizes[17] = OFFSET(LightSource, strength);
+  sizes[18] = OFFSET(LightSource, cumulative);
   sizes[19] = sizeof(Emitter);
   sizes[20] = sizeof(Material);
   sizes[21] = sizeof(RayQuery);

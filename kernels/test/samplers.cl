@@ -94,7 +94,7 @@ __kernel void probe_delta_light(LIGHT_PARAMS, float4 position, float4 normal, co
   const Lights lights = {LIGHT_ARGS};
   const Surface s = plain_surface(position.xyz, normal.xyz, true);
   LightSample sample;
-  sample_delta_light(&s, lights, u[i], 0u, &sample);
+  sample_light_source(&s, lights, u[i], 0u, &sample);
   drawn[2u * i] = (float4)(sample.towards, sample.distance);
   drawn[2u * i + 1u] = (float4)(sample.irradiance, sample.pdf);
 }

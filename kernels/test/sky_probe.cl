@@ -39,7 +39,7 @@ __kernel void probe_sky_towards(__constant SkyMap* map, const __global SkyRow* r
 
 /* drawn[3 i] = (direction drawn by u[i].xy, 0); its density and what the strength is multiplied by: drawn[3 i + 1] as drawn,
  * drawn[3 i + 2] as found in that direction. Where it was drawn the factor is radiance over density. */
-__kernel void probe_sun(const __global DeltaLight* sun, const __global float4* u, __global float4* drawn, uint count) {
+__kernel void probe_sun(const __global LightSource* sun, const __global float4* u, __global float4* drawn, uint count) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;

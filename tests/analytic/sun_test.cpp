@@ -81,6 +81,14 @@ TEST_CASE("a scene file's sun stands where its place and time have it, in the sc
   CHECK(noon.cosine == Approx(std::sin(position.elevation_deg * pi / 180.0)).epsilon(1e-12));
 }
 
+TEST_CASE("a date stands in quotes or as TOML has dates") {
+  const Vector3d from(0, 1, 1), at(0, 0, 0);
+  std::string unquoted = sun;
+  unquoted.replace(unquoted.find("\"2024-06-21\""), 12, "2024-06-21");
+  const PhotonScene a(floor_scene(diffuse, from, at, sun)), b(floor_scene(diffuse, from, at, unquoted));
+  CHECK(a.scene.lights.at(0).vector == b.scene.lights.at(0).vector);
+}
+
 TEST_CASE("sun and sky light a floor by radiance, solid angle and cosine") {
   const Noon noon;
   const Vector3d exact = 0.6 / pi * (noon.irradiance * noon.cosine + irradiance(*noon.scene.sky, Vector3d::UnitY()));

@@ -26,15 +26,15 @@ std::vector<Splat> floor_and_lid() {
 DeviceLighting light_from(std::uint32_t type, float x, float y, float z, float strength) {
   DeviceLighting lighting;
   lighting.materials.resize(1);
-  DeltaLight light{};
+  LightSource light{};
   light.vector[0] = x, light.vector[1] = y, light.vector[2] = z;
   light.type = type;
   for (float& channel : light.strength)
     channel = strength;
   light.cumulative = 1.0f;
-  lighting.delta.push_back(light);
+  lighting.light_sources.push_back(light);
   lighting.light_types = 1u << type;
-  lighting.params.delta_lights = 1;
+  lighting.params.light_sources = 1;
   lighting.params.samples = 1;
   return lighting;
 }
@@ -81,7 +81,7 @@ TEST_CASE("points of a scene without light are dark, and a stop leaves the rest 
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
   DeviceLighting dark;
   dark.materials.resize(1);
-  dark.delta.clear();
+  dark.light_sources.clear();
   const auto none = device.download(
       direct_irradiance_of_points(device, on_device, variant, dark, 1.0, splats.size(), 4, true, [] { return false; }),
       3 * splats.size());

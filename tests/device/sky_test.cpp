@@ -64,9 +64,9 @@ std::vector<Drawn> draw_from_map(const OnDevice& map, const std::vector<cl_float
   return as_drawn(device.download(out, 3 * numbers.size()));
 }
 
-std::vector<Drawn> draw_from_sun(const DeltaLight& sun, const std::vector<cl_float4>& numbers) {
+std::vector<Drawn> draw_from_sun(const LightSource& sun, const std::vector<cl_float4>& numbers) {
   Session& device = session();
-  const auto disc = device.upload(std::vector<DeltaLight>{sun});
+  const auto disc = device.upload(std::vector<LightSource>{sun});
   const auto u = device.upload(numbers);
   const auto out = device.allocate<cl_float4>(3 * numbers.size());
   cl::Kernel kernel = device.kernel("test/sky_probe.cl", "", "probe_sun");
@@ -82,8 +82,8 @@ bool same(const cl_float4& a, const SkyTexel& b) {
   return a.s[0] == b.radiance[0] && a.s[1] == b.radiance[1] && a.s[2] == b.radiance[2] && a.s[3] == b.density;
 }
 
-DeltaLight sun_of(const Vector3d& towards, double radius_deg) {
-  DeltaLight sun{};
+LightSource sun_of(const Vector3d& towards, double radius_deg) {
+  LightSource sun{};
   for (int k = 0; k < 3; ++k)
     sun.vector[k] = static_cast<float>(towards[k]);
   const double radius = radius_deg * pi / 180.0;
@@ -189,7 +189,7 @@ TEST_CASE("directions that the device draws from a map are distributed as their 
 TEST_CASE("directions drawn from the sun's disc fill it evenly") {
   const double radius_deg = GENERATE(0.265, 0.01, 10.0);
   const Vector3d towards = GENERATE(Vector3d(0.0, 0.0, 1.0), Vector3d(0.0, 0.0, -1.0), Vector3d(0.36, -0.48, 0.8));
-  const DeltaLight sun = sun_of(towards, radius_deg);
+  const LightSource sun = sun_of(towards, radius_deg);
   const std::vector<Drawn> drawn = draw_from_sun(sun, random_numbers(100'000, 4));
   constexpr int rings = 10, sectors = 12;
   std::vector<double> counts(rings * sectors);

@@ -326,7 +326,7 @@ TEST_CASE("dumped kernels hold what the scene needs and no more") {
   std::ifstream file(shade);
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string options = text.substr(0, text.find('\n'));
-  CHECK_THAT(options, Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT") &&
+  CHECK_THAT(options, Contains("HAS_LIGHT_SOURCES") && !Contains("HAS_EMITTERS") && !Contains("HAS_ENVIRONMENT") &&
                           !Contains("HAS_RADIOSITY"));
   CHECK_THAT(text, Contains("#line 1 \"kernels/surface/disc.cl\""));
 }

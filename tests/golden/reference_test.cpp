@@ -1,5 +1,7 @@
 /// docs/reference.md names every key that a scene file may have and every field that --stats writes.
 #include "host/error.h"
+#include "host/lights/light_kind.h"
+#include "host/materials/material_kind.h"
 #include "host/scene/load_scene.h"
 #include "tests/support/run_program.h"
 #include "tests/support/stats_file.h"
@@ -43,8 +45,10 @@ TEST_CASE("the reference names every key of a scene file") {
   std::string head = "version = 1\n[environment]\nradiance = [1, 1, 1]\n"
                      "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n"
                      "[[cloud]]\nfile = \"points.ply\"\nmaterial = \"phong\"\n";
-  const char* const materials[] = {"diffuse", "phong", "mirror", "glass", "conductor"};
-  for (const std::string type : materials)
+  std::vector<std::string> materials;
+  for (const MaterialType type : material_types())
+    materials.push_back(name_of(type));
+  for (const std::string& type : materials)
     head += "[[material]]\nname = \"" + type + "\"\ntype = \"" + type + "\"\n" +
             (type == "conductor" ? "metal = \"gold\"\n" : "");
   for (const char* section : {"render", "camera", "radiosity", "caustics", "octree", "traversal", "environment"}) {
@@ -59,12 +63,12 @@ TEST_CASE("the reference names every key of a scene file") {
   };
   // Shapes and lights lack what they must have, but a key that nobody knows is refused first.
   std::vector<Repeated> repeated{{"cloud.0", head}};
-  for (const char* material : materials)
-    repeated.push_back({std::string("material.") + material, head});
+  for (const std::string& material : materials)
+    repeated.push_back({"material." + material, head});
   for (const char* type : {"quad", "disc", "sphere", "box", "cylinder"})
     repeated.push_back({"shape.0", head + "[[shape]]\ntype = \"" + type + "\"\n"});
-  for (const char* type : {"point", "directional", "sun"})
-    repeated.push_back({"light.0", head + "[[light]]\ntype = \"" + type + "\"\n"});
+  for (const LightType type : light_types())
+    repeated.push_back({"light.0", head + "[[light]]\ntype = \"" + std::string(name_of(type)) + "\"\n"});
   for (const Repeated& r : repeated) {
     const std::vector<std::string> keys = keys_of(folder.write("s.toml", r.before), r.section);
     CAPTURE(r.section, r.before);

@@ -144,7 +144,7 @@ TEST_CASE("emitting splats are sampled by their power, evenly over their discs, 
 
 TEST_CASE("of many lights one is drawn by its strength") {
   const LightScene lights;
-  const std::vector<DeltaLight>& delta = lights.lighting.delta;
+  const std::vector<LightSource>& delta = lights.lighting.light_sources;
   REQUIRE(delta.size() == 6);
   std::vector<double> shares;
   double total = 0.0;

@@ -70,7 +70,7 @@ TEST_CASE("options depend on what a kernel reads, fast math on the kernels that 
   CHECK_THAT(eye_rays_program(v).options, Contains("GROUP_X=16") && Contains("GROUP_Y=4"));
   CHECK_THAT(trace_program(v).options, !Contains("GROUP"));
   CHECK_THAT(shade_program(v, {true, false, true}).options,
-             Contains("HAS_DELTA_LIGHTS") && !Contains("HAS_EMITTERS") && Contains("HAS_ENVIRONMENT"));
+             Contains("HAS_LIGHT_SOURCES") && !Contains("HAS_EMITTERS") && Contains("HAS_ENVIRONMENT"));
   v.fast_math = true;
   CHECK_THAT(shade_program(v, {}).options, Contains("-cl-mad-enable") && !Contains("finite"));
   CHECK_THAT(trace_program(v).options, Contains("-cl-mad-enable"));

@@ -37,7 +37,7 @@ TEST_CASE("specular splats look for light in proportion to their areas and to wh
   REQUIRE(sources.radiance.size() == 4);
   CHECK(sources.radiance[0][1] == Approx(2.0 / 3.14159265358979).epsilon(1e-6));
   CHECK(sources.radiance[3][1] == 0.0f);
-  CHECK(sources.delta.empty());
+  CHECK(sources.light_sources.empty());
   const auto diffuse = [](const Splat&) { return 0.0; };
   CHECK(sources_of_radiosity(radiosity, points, diffuse).emitters.empty());
 }

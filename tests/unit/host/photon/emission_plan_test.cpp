@@ -35,8 +35,8 @@ struct Discs {
   }
 };
 
-DeltaLight delta_light(int type, float x, float y, float z, float strength) {
-  DeltaLight light{};
+LightSource light_source(int type, float x, float y, float z, float strength) {
+  LightSource light{};
   light.type = static_cast<decltype(light.type)>(type);
   light.vector[0] = x, light.vector[1] = y, light.vector[2] = z;
   for (float& c : light.strength)
@@ -91,12 +91,12 @@ TEST_CASE("a leaf gets photons by what the light sends into its sphere") {
   PhotonSources sources;
   double first = 0.0, second = 0.0;
   SECTION("a point light: the spheres' solid angles") {
-    sources.delta = {delta_light(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 2.0f)};
+    sources.light_sources = {light_source(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 2.0f)};
     const auto solid_angle = [](double r2, double d2) { return 1.0 - std::sqrt(1.0 - r2 / d2); };
     first = solid_angle(0.0004, 0.25), second = solid_angle(0.0025, 0.34);
   }
   SECTION("a directional light: their cross sections") {
-    sources.delta = {delta_light(LIGHT_DIRECTIONAL, 0.6f, 0.8f, 0.0f, 2.0f)};
+    sources.light_sources = {light_source(LIGHT_DIRECTIONAL, 0.6f, 0.8f, 0.0f, 2.0f)};
     first = 0.0004, second = 0.0025;
   }
   SECTION("the environment: their surfaces") {
@@ -125,7 +125,7 @@ TEST_CASE("a leaf that no segment reaches gets an eighth, or nothing where power
   scene.add(0.3f, 0.1f, 0.5f, 0.03f);
   scene.add(0.7f, 0.1f, 0.5f, 0.03f);
   PhotonSources sources;
-  sources.delta = {delta_light(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 1.0f)};
+  sources.light_sources = {light_source(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 1.0f)};
   const auto left_alone = [](View<Splat> table, View<Segment> segments) {
     std::vector<std::uint8_t> blocked;
     for (const Segment& s : segments)
@@ -147,7 +147,7 @@ TEST_CASE("photons of equal power each carry an equal share of the flux through 
   scene.add(0.5f, 0.1f, 0.5f, 0.02f);
   scene.add(0.8f, 0.1f, 0.5f, 0.05f);
   PhotonSources sources;
-  sources.delta = {delta_light(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 3.0f)};
+  sources.light_sources = {light_source(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 3.0f)};
   const EmissionPlan plan = plan_emission(scene.leaves, scene.points, sources, all_see, options_of(10'000, true));
   CHECK(plan.photons == 10'000);
   const double flux = 3.0 * pi * (0.0004 / 0.25 + 0.0025 * 0.5 / std::sqrt(0.34) / 0.34); // SA = pi r² cos / d²
@@ -160,7 +160,7 @@ TEST_CASE("where less than one photon falls on a leaf, chance makes the mean rig
   for (int i = 0; i < 100; ++i)
     scene.add(0.01f * static_cast<float>(i), 0.1f, 0.5f, 0.004f);
   PhotonSources sources;
-  sources.delta = {delta_light(LIGHT_DIRECTIONAL, 0.0f, 1.0f, 0.0f, 1.0f)};
+  sources.light_sources = {light_source(LIGHT_DIRECTIONAL, 0.0f, 1.0f, 0.0f, 1.0f)};
   std::vector<double> sums(100);
   constexpr int seeds = 400;
   for (std::uint32_t seed = 0; seed < seeds; ++seed)
@@ -185,9 +185,9 @@ TEST_CASE("no photons from no light, to no leaf, or where none are wanted; a lam
     return plan_emission(scene.leaves, scene.points, sources, all_see, options_of(wanted)).photons;
   };
   CHECK(photons(1000) == 0);
-  sources.delta = {delta_light(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 0.0f)};
+  sources.light_sources = {light_source(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 0.0f)};
   CHECK(photons(1000) == 0); // black
-  sources.delta[0].strength[1] = 1.0f;
+  sources.light_sources[0].strength[1] = 1.0f;
   CHECK(photons(0) == 0);
   CHECK(photons(1000) >= 1000);
   CHECK(plan_emission({}, scene.points, sources, all_see, options_of(1000)).photons == 0);
@@ -208,7 +208,7 @@ TEST_CASE("as many photons as may be asked for have numbers") {
   scene.add(0.5f, 0.1f, 0.5f, 0.05f);
   scene.leaves.area[0] *= 0.01f; // most fly past: four times as many set out
   PhotonSources sources;
-  sources.delta = {delta_light(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 1.0f)};
+  sources.light_sources = {light_source(LIGHT_POINT, 0.5f, 0.6f, 0.5f, 1.0f)};
   const EmissionPlan plan = plan_emission(scene.leaves, scene.points, sources, all_see, options_of(100'000'000));
   REQUIRE(plan.batches.size() == 1);
   CHECK(plan.photons == 400'000'000);

@@ -45,7 +45,7 @@ TEST_CASE("classes of light paths count their paths, the longest bounds the boun
 
 TEST_CASE("classes that a scene has no path of are told from those that it has, with what is missing") {
   PathSupply lit, shone, mirror, phong;
-  lit.diffuse = lit.delta_lights = true;
+  lit.diffuse = lit.light_sources = true;
   shone.diffuse = shone.area_lights = true;
   mirror = lit;
   mirror.specular = true;
@@ -73,7 +73,7 @@ TEST_CASE("classes that a scene has no path of are told from those that it has, 
   CHECK(why("LSE,LD+E", PathSupply{}).empty()); // no light at all: the scene is told of that elsewhere
   CHECK(why("L" + std::string(30, 'D') + "E", lit).empty());
   PathSupply nothing;
-  nothing.delta_lights = true;
+  nothing.light_sources = true;
   CHECK_THAT(why("LDSE", nothing), Contains("name other classes"));
 }
 

@@ -43,7 +43,7 @@ TEST_CASE("only emitting splats are emitters, only lights with power are lights"
   REQUIRE(lighting.emitters.size() == 1);
   CHECK(lighting.emitters[0].point == 1);
   CHECK(lighting.emitters[0].cumulative == 1.0f);
-  CHECK(lighting.delta.size() == 1);
+  CHECK(lighting.light_sources.size() == 1);
   CHECK_FALSE(lighting.has_environment);
 }
 
@@ -89,8 +89,8 @@ TEST_CASE("the radiance scale is a power of two near the brightest source, whate
         {LightType::point, false, Vector3d(0, 0, 0), Vector3d(power, power, power) / (4.0 * pi), 0.0, {}});
     const DeviceLighting lighting = device_lighting(scene, {}, two_splats());
     CHECK(std::log2(lighting.radiance.scale) == std::round(std::log2(lighting.radiance.scale)));
-    CHECK(lighting.delta[0].strength[0] > 0.5f);
-    CHECK(lighting.delta[0].strength[0] < 2.0f);
+    CHECK(lighting.light_sources[0].strength[0] > 0.5f);
+    CHECK(lighting.light_sources[0].strength[0] < 2.0f);
   }
 }
 

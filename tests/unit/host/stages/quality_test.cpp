@@ -42,11 +42,11 @@ TEST_CASE("a lit cloud has as many light samples as its quality, unless the scen
     Scene scene;
     apply_bake_quality(quality, scene);
     CHECK(scene.radiosity.light_samples == samples);
-    Scene told;
-    told.radiosity.light_samples = 7;
-    apply_bake_quality(quality, told);
-    CHECK(told.radiosity.light_samples == 7);
-    CHECK(told.radiosity.epsilon == scene.radiosity.epsilon);
+    Scene given;
+    given.radiosity.light_samples = 7;
+    apply_bake_quality(quality, given);
+    CHECK(given.radiosity.light_samples == 7);
+    CHECK(given.radiosity.epsilon == scene.radiosity.epsilon);
     Scene picture;
     apply_quality(quality, picture);
     CHECK_FALSE(picture.radiosity.light_samples);
