@@ -1,5 +1,7 @@
 #pragma once
 #include "host/error.h"
+#include <cstdint>
+#include <string>
 
 namespace pointgi {
 
@@ -9,5 +11,10 @@ class ResourceError : public Error {
 public:
   using Error::Error;
 };
+
+/// "12 MiB", rounded up.
+inline std::string megabytes(std::uint64_t bytes) {
+  return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
 
 } // namespace pointgi

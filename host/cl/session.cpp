@@ -1,5 +1,6 @@
 #include "host/cl/session.h"
 #include "host/cl/device_clock.h"
+#include "host/cl/resource_error.h"
 #include "host/error.h"
 #include <algorithm>
 
@@ -8,10 +9,6 @@ namespace pointgi {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string megabytes(std::uint64_t bytes) {
-  return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
-}
 
 /// "1048577 bytes (2 MiB)".
 std::string amount(std::uint64_t bytes) {

@@ -1,4 +1,5 @@
 #include "host/radiosity/direct.h"
+#include "host/cl/resource_error.h"
 #include "host/error.h"
 #include "host/passes/variant.h"
 #include "host/radiosity/point_planes.h"
@@ -9,10 +10,6 @@ namespace pointgi {
 namespace {
 
 constexpr double first_pairs = 2e7; ///< of a first launch, of which nothing is known yet
-
-std::string megabytes(std::uint64_t bytes) {
-  return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
-}
 
 } // namespace
 
