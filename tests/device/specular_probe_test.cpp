@@ -1,6 +1,7 @@
 /// What glass, the Phong lobe and the memory of media are on the device, against formulas in double (truths.md §1).
 #include "host/tune/variant_list.h"
 #include "tests/support/device.h"
+#include "tests/support/fresnel.h"
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -31,16 +32,6 @@ Bent glass(double degrees, double eta, double length = 0.0, double absorption = 
                          static_cast<float>(length), static_cast<float>(absorption)}};
   const auto out = probe<cl_float4>("probe_glass", std::vector<cl_float4>{in}, 2);
   return {out[0].s[0], out[0].s[1], out[0].s[2], out[0].s[3], out[1].s[0]};
-}
-
-/// Fresnel's equations by angles, as optics books have them.
-double fresnel(double degrees, double eta) {
-  const double i = degrees * pi / 180.0, sine = std::sin(i) / eta;
-  if (sine >= 1.0) return 1.0;
-  const double t = std::asin(sine);
-  if (i < 1e-9) return std::pow((eta - 1.0) / (eta + 1.0), 2);
-  const double across = std::sin(i - t) / std::sin(i + t), along = std::tan(i - t) / std::tan(i + t);
-  return 0.5 * (across * across + along * along);
 }
 
 } // namespace

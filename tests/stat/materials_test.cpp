@@ -1,5 +1,6 @@
 /// Directions in which surfaces scatter rays, against densities written here.
 #include "tests/stat/samplers.h"
+#include "tests/support/fresnel.h"
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -152,20 +153,6 @@ TEST_CASE("a Phong surface scatters about the mirrored ray, and says with which 
   CHECK(wrong_end == 0);
   CHECK(off < 1e-4 + 3.0 * 1.2e-7 * exponent); // a rounded cosine to the power of the exponent; three vectors rounded
 }
-
-namespace {
-
-/// Fresnel's equations by angles.
-double fresnel(double degrees, double eta) {
-  const double i = degrees * pi / 180.0, sine = std::sin(i) / eta;
-  if (sine >= 1.0) return 1.0;
-  const double t = std::asin(sine);
-  if (i < 1e-9) return std::pow((eta - 1.0) / (eta + 1.0), 2);
-  const double across = std::sin(i - t) / std::sin(i + t), along = std::tan(i - t) / std::tan(i + t);
-  return 0.5 * (across * across + along * along);
-}
-
-} // namespace
 
 TEST_CASE("glass reflects as large a share of its rays as Fresnel says") {
   const bool from_outside = GENERATE(true, false);
