@@ -72,7 +72,8 @@ private:
 
   void read_header() {
     if (bytes_.substr(0, 2) != "#?")
-      fail(0, "the file does not begin with \"#?\", expected a Radiance picture; convert it to .hdr or .exr");
+      fail(0, "the file does not begin with \"#?\", it is no Radiance picture whatever its name says; convert it to "
+              ".hdr or .exr");
     line();
     for (;;) {
       line_at_ = at_;

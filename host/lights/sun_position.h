@@ -30,7 +30,7 @@ struct DateTime {
 };
 
 /// What a scene's words must be, for errors.
-inline constexpr const char* date_words = "a date from 1800 to 2200 like \"2024-06-21\"";
+inline constexpr const char* date_words = "a date of the calendar from 1800 to 2200 like \"2024-06-21\"";
 inline constexpr const char* zone_words = "an offset from UTC like \"+05:30\", \"-07:00\" or \"Z\"";
 inline constexpr const char* zoned_time_words = "a time with its offset from UTC like \"14:30+02:00\" or \"12:30:15Z\"";
 
