@@ -1,6 +1,6 @@
 #include "tests/support/number.h"
 #include "tests/support/photon_scene.h"
-#include "tests/support/render.h"
+#include "tests/support/scene_parts.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -173,7 +173,7 @@ TEST_CASE("a floor's irradiance by photons adds up to their power") {
 
 TEST_CASE("caustics of an area light are those that path tracing finds by chance") {
   const std::string scene =
-      "version = 1\n[render]\nsize = [32, 24]\nspp = SPP\n[camera]\nposition = [0.0, 1.4, 2.6]\n"
+      "version = 1\n[render]\nsize = [32, 24]\nspp = 32\n[camera]\nposition = [0.0, 1.4, 2.6]\n"
       "look_at = [0.0, 0.1, 0.0]\nfov_deg = 40.0\n[radiosity]\nmethod = \"none\"\n[caustics]\nphotons = 200000\n" +
       materials +
       "[[shape]]\ntype = \"sphere\"\ncentre = [-0.4, 0.4, 0.0]\nradius = 0.3\nmaterial = \"glass\"\n"
@@ -183,19 +183,9 @@ TEST_CASE("caustics of an area light are those that path tracing finds by chance
       "[[shape]]\ntype = \"disc\"\ncentre = [-0.9, 1.5, 0.2]\nnormal = [1.0, -1.5, 0.0]\nradius = 0.35\n"
       "material = \"lamp\"\nspacing = 0.01\n" +
       floor_at(0.0, 1.5, 0.05);
-  const auto with_spp = [&](const char* spp) {
-    std::string text = scene;
-    return text.replace(text.find("SPP"), 3, spp);
-  };
-  const Picture ours = render_text(with_spp("32"));
-  const Picture truth = render_text(with_spp("1024"), [](RenderOptions& options) {
-    options.integrator = "path";
-    options.paths = "LS*E,LS*DS*E";
-  });
-  const Picture caustic = render_text(with_spp("1024"), [](RenderOptions& options) {
-    options.integrator = "path";
-    options.paths = "LS+DE";
-  });
+  const Picture ours = render_text(scene);
+  const Picture truth = trace(scene, "LS*E,LS*DS*E", 1024);
+  const Picture caustic = trace(scene, "LS+DE", 1024);
   CHECK(mean(ours, "G") ==
         Approx(mean(ours, "Direct.G") + mean(ours, "Specular.G") + mean(ours, "Caustic.G")).epsilon(1e-5));
   CHECK(mean(ours, "G") == Approx(mean(truth, "G")).epsilon(0.03));

@@ -1,7 +1,7 @@
 /// Environment maps in pictures, against sums over their texels (method/sky.md).
 #include "tests/support/number.h"
 #include "tests/support/photon_scene.h"
-#include "tests/support/render.h"
+#include "tests/support/scene_parts.h"
 #include "tests/support/sky.h"
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -232,7 +232,7 @@ TEST_CASE("a glass ball throws the light of a map onto a floor as paths find it"
   // A patch of sky 22 degrees wide, which paths meet by chance often enough to be compared with.
   const MapFile map(
       grey_image(32, 16, [](int x, int y) { return x >= 15 && x < 17 && y >= 3 && y < 5 ? 50.0f : 0.2f; }));
-  const std::string scene = "version = 1\n[render]\nsize = [24, 18]\nspp = SPP\n[camera]\nposition = [0.0, 1.6, 2.6]\n"
+  const std::string scene = "version = 1\n[render]\nsize = [24, 18]\nspp = 16\n[camera]\nposition = [0.0, 1.6, 2.6]\n"
                             "look_at = [0.0, 0.1, 0.2]\nfov_deg = 35.0\n[radiosity]\nmethod = \"none\"\n"
                             "[caustics]\nphotons = 400000\n"
                             "[[material]]\nname = \"glass\"\ntype = \"glass\"\nior = 1.5\n"
@@ -242,15 +242,8 @@ TEST_CASE("a glass ball throws the light of a map onto a floor as paths find it"
                             "[[shape]]\ntype = \"quad\"\ncorner = [-1.5, 0.0, -1.5]\nedge_u = [0.0, 0.0, 3.0]\n"
                             "edge_v = [3.0, 0.0, 0.0]\nmaterial = \"white\"\nspacing = 0.06\n" +
                             map.section();
-  const auto with_spp = [&](const char* spp) {
-    std::string text = scene;
-    return text.replace(text.find("SPP"), 3, spp);
-  };
-  const Picture ours = render_text(with_spp("16"));
-  const Picture caustic = render_text(with_spp("1024"), [](RenderOptions& options) {
-    options.integrator = "path";
-    options.paths = "LS+DE";
-  });
+  const Picture ours = render_text(scene);
+  const Picture caustic = trace(scene, "LS+DE", 1024);
   // Paths: 442368 of which one in a hundred ends in the patch, 2 %; photons spread by their gathering, 1 %.
   CHECK(mean(ours, "Caustic.G") == Approx(mean(caustic, "G")).epsilon(0.06));
 }
