@@ -1,21 +1,36 @@
 #pragma once
 /// A point cloud as it came from a file or a sampler: world units, double positions, attributes that may be missing.
+#include "host/cloud/field.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace pointgi {
 
+/// What the neighbourhood of a point says about it.
+enum class Structure : std::uint8_t {
+  surface,
+  line,   ///< a cable, a twig
+  volume, ///< foliage, or noise through and through
+  stray   ///< its neighbours are nearer to one another than it is to them
+};
+
 /// Every attribute array is either empty (the attribute is missing) or as long as `position`.
 struct PointCloud {
   std::vector<Eigen::Vector3d> position; ///< world units; double, so that map coordinates of 1e6 keep their millimetres
-  std::vector<Eigen::Vector3f> normal;   ///< direction as given; unit length only after complete_cloud()
-  std::vector<Eigen::Vector3f> colour;   ///< [0,1] a channel, encoded as the file has it (usually sRGB)
-  std::vector<float> radius;             ///< splat radius r_i, world units
-  std::vector<float> area;               ///< effective area A_i, world units squared (method.md §4)
+  std::vector<Eigen::Vector3f> normal; ///< as given: any length, zero or NaN where missing; unit after complete_cloud()
+  std::vector<Eigen::Vector3f> colour; ///< [0,1] a channel, encoded as the file has it (usually sRGB)
+  std::vector<float> radius;           ///< splat radius r_i, world units
+  std::vector<float> area;             ///< effective area A_i, world units squared (method.md §4)
+  std::vector<Structure> structure;    ///< filled by complete_cloud()
+  std::vector<std::uint32_t> record;   ///< number of the point in its file, from 0; empty: its own index
+  std::vector<std::uint16_t> station;  ///< index into `stations` of the scanner that saw it
+  std::vector<Field> fields;           ///< those that were asked for (ReadRequest), and what stands in for colours
   std::vector<std::array<std::uint32_t, 3>> triangle; ///< faces, where the file has any; indices into `position`
+  std::vector<Eigen::Vector3d> stations;              ///< positions of scanners; not an attribute of points
 
   std::size_t size() const { return position.size(); }
 };
@@ -26,18 +41,36 @@ struct PropertyUse {
   std::string use;
 };
 
+/// How a cloud was made, as far as it can be told: decides up, sides, view and light where the user does not.
+enum class CloudKind {
+  model,       ///< an object, closed or nearly so
+  depth_frame, ///< one frame of a depth camera
+  station,     ///< one scanner position that is known, or several
+  terrain,     ///< a height field, as from the air
+  room,        ///< an interior without a known station
+  map,         ///< streets, sites: large, open, gravity known
+  sparse,      ///< points of structure from motion: few, uneven, no surface
+  foliage      ///< most points have no surface around them
+};
+const char* name_of(CloudKind kind);
+
 /// What was found, estimated, dropped or odd on the way from a file to splats. Shown by `pointgi info`; warnings are
 /// logged.
 struct CloudReport {
   std::string format;                  ///< e.g. "PLY 1.0 binary_little_endian"
   std::vector<PropertyUse> properties; ///< in file order
   std::vector<std::string> warnings;   ///< full sentences, each with its remedy
+  std::vector<std::string> notes;      ///< full sentences of what was chosen, logged as information
   std::size_t points_in_file = 0;
   std::size_t points_dropped = 0; ///< not finite, or with radius <= 0
   std::size_t triangles = 0;
   std::string normals_from; ///< "file", "file, flipped", "faces", "estimated (…)"
   std::string radii_from;   ///< "file", "estimated (…)"
   std::string areas_from;
+  std::optional<Eigen::Vector3d> up; ///< unit; what the format defines (LAS, PTX, E57: z), or the cloud's kind shows
+  CloudKind kind = CloudKind::model;
+  std::string kind_reason;               ///< by what it was recognised; empty: not looked at
+  std::vector<Eigen::Vector3d> stations; ///< where the points were seen from, the file's coordinates; empty: not known
 };
 
 } // namespace pointgi

@@ -81,8 +81,9 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 } // namespace
 
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  PointCloud cloud =
-      settings.points ? *settings.points : read_cloud(settings.file, settings.spacing / settings.scale, report);
+  PointCloud cloud = settings.points
+                         ? *settings.points
+                         : read_cloud(settings.file, {settings.spacing / settings.scale, {}, false}, report);
   if (settings.points) report.format = "arrays in memory";
   try {
     complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);

@@ -132,7 +132,7 @@ TEST_CASE("scans: coverage equals the triangle mesh's within 2 %") {
     }
     CAPTURE(name);
     CloudReport report;
-    const PointCloud mesh = read_ply(*path, report);
+    const PointCloud mesh = read_ply(*path, {}, report);
     const Picture picture = render_scan(*path, false).picture;
     const double truth = mesh_coverage(mesh, picture);
     CHECK(truth > 0.05);

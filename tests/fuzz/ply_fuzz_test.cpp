@@ -57,7 +57,7 @@ std::vector<std::string> seed_files() {
 bool survives(const std::string& path, std::size_t file_size) {
   CloudReport report;
   try {
-    const PointCloud cloud = read_ply(path, report);
+    const PointCloud cloud = read_ply(path, {}, report);
     // A vertex takes three bytes at least; a triangle comes with an index of a byte or more of its own.
     REQUIRE(cloud.size() <= file_size / 3);
     REQUIRE(cloud.triangle.size() <= file_size);
@@ -91,7 +91,7 @@ TEST_CASE("ply fuzz: the seeds themselves are sound") {
   const TemporaryFolder folder;
   for (const std::string& seed : seed_files()) {
     CloudReport report;
-    const PointCloud cloud = read_ply(folder.write("seed.ply", seed), report);
+    const PointCloud cloud = read_ply(folder.write("seed.ply", seed), {}, report);
     CHECK(cloud.size() == 4);
     CHECK(cloud.triangle.size() == 4); // a triangle, a quad, and a strip of one (the second strip is too short)
     CHECK(report.warnings.empty());

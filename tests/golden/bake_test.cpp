@@ -30,7 +30,7 @@ TEST_CASE("bake writes a lit cloud that the program reads again, names it, and s
   }
   CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "bake"});
   CloudReport report;
-  const PointCloud cloud = read_ply(out, report);
+  const PointCloud cloud = read_ply(out, {}, report);
   CHECK(cloud.size() == stats["scene"]["points"]);
   for (const Eigen::Vector3d& p : cloud.position)
     REQUIRE(p.norm() == Approx(0.8).margin(1e-6)); // a ball of radius 0.8, floats in a cube of 2
@@ -140,7 +140,7 @@ TEST_CASE("bake without light between surfaces: direct light alone, or black, an
     CHECK_THAT(run.err, Contains("warning: no light between surfaces"));
     CloudReport report;
     float most = 0.0f;
-    for (const Eigen::Vector3f& colour : read_ply(out, report).colour)
+    for (const Eigen::Vector3f& colour : read_ply(out, {}, report).colour)
       most = std::max(most, colour.maxCoeff());
     return most;
   };

@@ -1,6 +1,6 @@
 #pragma once
 /// PLY files: ascii and both binary byte orders, any property order and type.
-#include "host/cloud/point_cloud.h"
+#include "host/cloud/readers/readers.h"
 #include <string>
 
 namespace pointgi {
@@ -10,7 +10,7 @@ namespace pointgi {
 /// complete_cloud() drops and counts them.
 /// Throws Error(input) naming the file and the line (header, ascii body) or byte (binary body), what was expected and
 /// what was found. `report` receives format, property uses, counts and warnings.
-PointCloud read_ply(const std::string& path, CloudReport& report);
+PointCloud read_ply(const std::string& path, const ReadRequest& request, CloudReport& report);
 
 /// Extra per-vertex float columns, e.g. {"scalar_radiosity_r", values}.
 struct PlyColumn {

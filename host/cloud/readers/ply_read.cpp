@@ -209,7 +209,7 @@ void scale_colours(const PlyLayout& layout, std::vector<Eigen::Vector3f>& colour
 
 } // namespace
 
-PointCloud read_ply(const std::string& path, CloudReport& report) {
+PointCloud read_ply(const std::string& path, const ReadRequest&, CloudReport& report) {
   PointCloud cloud;
   PlyLayout layout;
   {

@@ -71,7 +71,7 @@ TEST_CASE("fmm against the direct sum: a scan turned inside out") {
     return;
   }
   CloudReport report;
-  PointCloud cloud = read_ply(*path, report);
+  PointCloud cloud = read_ply(*path, {}, report);
   complete_cloud(cloud, {}, report);
   const Frame frame = frame_of(cloud);
   std::vector<Splat> splats;

@@ -32,7 +32,7 @@ std::optional<PointCloud> scan(const std::string& name) {
     return std::nullopt;
   }
   CloudReport report;
-  return read_ply(*path, report);
+  return read_ply(*path, {}, report);
 }
 
 } // namespace

@@ -28,7 +28,7 @@ struct Result {
 Result read(const std::string& bytes) {
   const TemporaryFolder folder;
   Result result;
-  result.cloud = read_ply(folder.write("cloud.ply", bytes), result.report);
+  result.cloud = read_ply(folder.write("cloud.ply", bytes), {}, result.report);
   return result;
 }
 
@@ -375,7 +375,7 @@ TEST_CASE("ply read: only regular files are opened") {
                                                         {"/dev/zero", "is a device"}}) {
     CloudReport report;
     try {
-      read_ply(path, report);
+      read_ply(path, {}, report);
       FAIL("accepted: " << path);
     } catch (const Error& error) {
       CHECK(error.kind() == ErrorKind::input);

@@ -22,7 +22,7 @@ TEST_CASE("ply read: scans have the points and triangles that their makers count
       continue;
     }
     CloudReport report;
-    const PointCloud cloud = read_ply(*path, report);
+    const PointCloud cloud = read_ply(*path, {}, report);
     CHECK(cloud.size() == scan.points);
     CHECK(report.triangles == scan.triangles);
     CHECK(cloud.normal.empty() != scan.normals);

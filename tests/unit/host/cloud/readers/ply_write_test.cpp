@@ -30,7 +30,7 @@ TEST_CASE("ply write: what is written is read back") {
   write_ply(folder.file("a.ply"), cloud);
   CHECK(folder.entries() == 1);
   CloudReport report;
-  const PointCloud back = read_ply(folder.file("a.ply"), report);
+  const PointCloud back = read_ply(folder.file("a.ply"), {}, report);
   CHECK(report.format == "PLY 1.0 binary_little_endian");
   CHECK(report.warnings.empty());
   CHECK(back.position == cloud.position); // doubles: bit for bit
@@ -54,7 +54,7 @@ TEST_CASE("ply write: columns follow under their names and missing attributes ar
   // 3 doubles and 2 floats a point
   CHECK(text.size() == text.find("end_header\n") + 11 + 2 * (24 + 8));
   CloudReport report;
-  const PointCloud back = read_ply(folder.file("a.ply"), report);
+  const PointCloud back = read_ply(folder.file("a.ply"), {}, report);
   CHECK(back.position == cloud.position);
   CHECK(back.normal.empty());
   CHECK(back.colour.empty());
@@ -71,7 +71,7 @@ TEST_CASE("ply write: colours that are no colours become bytes without a surpris
   cloud.colour = {{std::numeric_limits<float>::quiet_NaN(), -3.0f, std::numeric_limits<float>::infinity()}};
   write_ply(folder.file("a.ply"), cloud);
   CloudReport report;
-  CHECK(read_ply(folder.file("a.ply"), report).colour[0] == Eigen::Vector3f(0, 0, 1));
+  CHECK(read_ply(folder.file("a.ply"), {}, report).colour[0] == Eigen::Vector3f(0, 0, 1));
 }
 
 TEST_CASE("ply write: more than one buffer full") {
@@ -81,7 +81,7 @@ TEST_CASE("ply write: more than one buffer full") {
     cloud.position.emplace_back(i, -i, 0.5 * i);
   write_ply(folder.file("a.ply"), cloud);
   CloudReport report;
-  CHECK(read_ply(folder.file("a.ply"), report).position == cloud.position);
+  CHECK(read_ply(folder.file("a.ply"), {}, report).position == cloud.position);
 }
 
 TEST_CASE("ply write: a place that cannot be written is an output error and the old file stays whole") {

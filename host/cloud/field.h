@@ -1,0 +1,31 @@
+#pragma once
+/// A value that a file has for each of its points: PLY calls it a property, LAS a dimension, PCD a field, a table a
+/// column.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pointgi {
+
+enum class FieldType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
+
+inline bool is_float(FieldType type) {
+  return type == FieldType::f32 || type == FieldType::f64;
+}
+
+/// What a file says of one of its fields.
+struct FieldInfo {
+  std::string name;
+  FieldType type = FieldType::f32;
+  double scale = 1.0; ///< the file holds (value - offset) / scale, as LAS does; values are given with both applied
+  double offset = 0.0;
+};
+
+/// One field of all points. A double holds every type but integers above 2^53 exactly.
+struct Field {
+  FieldInfo info;
+  std::vector<double> values; ///< one a point
+};
+
+} // namespace pointgi
