@@ -32,14 +32,6 @@ void refuse_unless_regular(const std::string& path, const struct stat& status) {
                   (S_ISDIR(status.st_mode) ? "; name a file in it" : "; save the data to a file first"));
 }
 
-/// Closes on every way out.
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
-
 } // namespace
 
 void require_regular_file(const std::string& path) {
@@ -48,31 +40,50 @@ void require_regular_file(const std::string& path) {
   refuse_unless_regular(path, status);
 }
 
-FileBytes read_whole_file(const std::string& path) {
-  // The first look is before opening (opening a device can have effects), the second after (the name may have changed
-  // hands); O_NONBLOCK keeps a pipe from blocking in between.
+// The first look is before opening (opening a device can have effects), the second after (the name may have changed
+// hands); O_NONBLOCK keeps a pipe from blocking in between.
+InputFile::InputFile(const std::string& path) : path_(path) {
   require_regular_file(path);
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd_ < 0) throw cannot_read(path, errno);
   struct stat status {};
-  if (file.fd < 0 || ::fstat(file.fd, &status) != 0) throw cannot_read(path, errno);
-  refuse_unless_regular(path, status);
+  try {
+    if (::fstat(fd_, &status) != 0) throw cannot_read(path, errno);
+    refuse_unless_regular(path, status);
+  } catch (...) {
+    ::close(fd_);
+    throw;
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
 
+InputFile::~InputFile() {
+  ::close(fd_);
+}
+
+void InputFile::read(std::uint64_t offset, void* to, std::size_t bytes) const {
+  std::size_t done = 0;
+  while (done < bytes) {
+    const ssize_t got = ::pread(fd_, static_cast<char*>(to) + done, std::min<std::size_t>(bytes - done, 1u << 30),
+                                static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw cannot_read(path_, errno);
+    if (got == 0)
+      throw Error(ErrorKind::input, path_ + ": became shorter while it was read (at byte " +
+                                        std::to_string(offset + done) + "); wait until it has been written");
+    done += static_cast<std::size_t>(got);
+  }
+}
+
+FileBytes read_whole_file(const std::string& path) {
+  const InputFile file(path);
   FileBytes bytes;
-  bytes.size = static_cast<std::size_t>(status.st_size);
+  bytes.size = static_cast<std::size_t>(file.size());
   bytes.data.reset(new (std::nothrow) char[std::max<std::size_t>(bytes.size, 1)]);
   if (!bytes.data)
     throw Error(ErrorKind::memory, path + ": " + std::to_string(bytes.size) +
                                        " bytes do not fit into memory; thin the cloud out or split it");
-  std::size_t done = 0;
-  while (done < bytes.size) {
-    const ssize_t got = ::read(file.fd, bytes.data.get() + done, std::min<std::size_t>(bytes.size - done, 1u << 30));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw cannot_read(path, errno);
-    if (got == 0)
-      throw Error(ErrorKind::input, path + ": became shorter while it was read (at byte " + std::to_string(done) +
-                                        "); wait until it has been written");
-    done += static_cast<std::size_t>(got);
-  }
+  file.read(0, bytes.data.get(), bytes.size);
   return bytes;
 }
 

@@ -2,6 +2,7 @@
 /// Getting hold of a user's input file without being blocked, surprised or drowned by it.
 #include "host/error.h"
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,6 +17,28 @@ struct FileBytes {
 
 /// Throws Error(input) unless `path` is a regular file: a pipe would block, a device never ends.
 void require_regular_file(const std::string& path);
+
+/// A regular file that is open for reading at any place; several threads may read at once.
+class InputFile {
+public:
+  /// Throws Error(input) when it is missing, not regular or not readable.
+  explicit InputFile(const std::string& path);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return size_; } ///< bytes, when it was opened
+
+  /// The `bytes` bytes from byte `offset` on, which the file has had when it was opened. Throws Error(input) when it
+  /// has become shorter or the disk fails.
+  void read(std::uint64_t offset, void* to, std::size_t bytes) const;
+
+private:
+  std::string path_;
+  std::uint64_t size_ = 0;
+  int fd_ = -1;
+};
 
 /// Reads a regular file in one go. Throws Error(input) when it is missing, not regular or not readable, and
 /// Error(memory) when it is larger than the memory that can be had.

@@ -19,3 +19,16 @@ TEST_CASE("input file: all bytes are read and an empty file is empty") {
   CHECK(std::string(read.data.get(), read.size) == bytes);
   CHECK(read_whole_file(folder.write("empty", "")).size == 0);
 }
+
+TEST_CASE("input file: any piece of a file can be read and one that is gone is an error") {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.write("a.bin", "0123456789");
+  const InputFile file(path);
+  CHECK(file.size() == 10);
+  std::string piece(4, ' ');
+  file.read(3, piece.data(), 4);
+  CHECK(piece == "3456");
+  std::filesystem::resize_file(path, 5);
+  CHECK_THROWS_WITH(file.read(3, piece.data(), 4), Catch::Matchers::Contains("became shorter while it was read"));
+  CHECK_THROWS_WITH(InputFile(folder.file("absent")), Catch::Matchers::Contains("No such file"));
+}
