@@ -30,6 +30,8 @@ void print_report(const std::string& file, const CloudReport& report) {
     std::printf("  %s %-*s  %s\n", i == 0 ? "properties " : "           ", static_cast<int>(widest),
                 report.properties[i].property.c_str(), report.properties[i].use.c_str());
   if (report.properties.size() > most) std::printf("              and %zu more\n", report.properties.size() - most);
+  for (const std::string& note : report.notes)
+    std::printf("  note        %s\n", note.c_str());
   for (const std::string& warning : report.warnings)
     std::printf("  warning     %s\n", warning.c_str());
 }

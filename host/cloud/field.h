@@ -13,6 +13,10 @@ enum class FieldType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 inline bool is_float(FieldType type) {
   return type == FieldType::f32 || type == FieldType::f64;
 }
+/// Bytes of one value in a binary file.
+std::size_t size_of(FieldType type);
+/// As PLY calls it: "uchar", "float" ...; "int64" and "uint64", which PLY lacks.
+const char* name_of(FieldType type);
 
 /// What a file says of one of its fields.
 struct FieldInfo {
@@ -27,5 +31,8 @@ struct Field {
   FieldInfo info;
   std::vector<double> values; ///< one a point
 };
+
+/// A name as fields are looked up by it: in lower case, without the scalar_ that CloudCompare puts before its own.
+std::string lookup_name(const std::string& name);
 
 } // namespace pointgi

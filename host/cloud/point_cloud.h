@@ -59,6 +59,7 @@ const char* name_of(CloudKind kind);
 struct CloudReport {
   std::string format;                  ///< e.g. "PLY 1.0 binary_little_endian"
   std::vector<PropertyUse> properties; ///< in file order
+  std::vector<std::string> fields;     ///< names of what the file has for each point, as a scene's keys may name them
   std::vector<std::string> warnings;   ///< full sentences, each with its remedy
   std::vector<std::string> notes;      ///< full sentences of what was chosen, logged as information
   std::size_t points_in_file = 0;

@@ -25,6 +25,8 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
     const CloudReport& r = splats.reports[i];
     log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
              r.normals_from, r.radii_from);
+    for (const std::string& note : r.notes)
+      log_info("{}: {}", scene.clouds[i].file, note);
     for (const std::string& warning : r.warnings)
       log_warning("{}: {}", scene.clouds[i].file, warning);
   }

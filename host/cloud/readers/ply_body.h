@@ -49,25 +49,28 @@ public:
   }
   void end_record() {}
 
-  double scalar(PlyType type) {
+  double scalar(FieldType type) {
     if (static_cast<std::size_t>(end_ - at_) < size_of(type)) fail("the file ends within a value; it is truncated");
     switch (type) {
-    case PlyType::i8:
+    case FieldType::i8:
       return load<std::int8_t, std::uint8_t>();
-    case PlyType::u8:
+    case FieldType::u8:
       return load<std::uint8_t, std::uint8_t>();
-    case PlyType::i16:
+    case FieldType::i16:
       return load<std::int16_t, std::uint16_t>();
-    case PlyType::u16:
+    case FieldType::u16:
       return load<std::uint16_t, std::uint16_t>();
-    case PlyType::i32:
+    case FieldType::i32:
       return load<std::int32_t, std::uint32_t>();
-    case PlyType::u32:
+    case FieldType::u32:
       return load<std::uint32_t, std::uint32_t>();
-    case PlyType::f32:
+    case FieldType::f32:
       return static_cast<double>(load<float, std::uint32_t>());
-    case PlyType::f64:
+    case FieldType::f64:
       return load<double, std::uint64_t>();
+    case FieldType::i64: // no type of PLY
+    case FieldType::u64:
+      break;
     }
     return 0.0;
   }
@@ -85,7 +88,7 @@ public:
     }
     return static_cast<std::size_t>(count);
   }
-  void skip(PlyType type, std::size_t items) {
+  void skip(FieldType type, std::size_t items) {
     if (items > static_cast<std::size_t>(end_ - at_) / size_of(type))
       fail("the file ends within a value; it is truncated");
     at_ += items * size_of(type);
@@ -138,14 +141,13 @@ public:
     if (!next_filled_line()) fail("the file ends here; it is truncated");
   }
   /// Values beyond the declared ones are common (MeshLab declares face colours and writes wedge colours): counted only.
-  /// Values beyond the declared ones are common (MeshLab declares face colours and writes wedge colours): counted only.
   void end_record() {
     if (at_line_end()) return;
     if (lines_too_long_++ == 0) first_long_line_ = line_;
     at_ = line_end_;
   }
 
-  double scalar(PlyType type) {
+  double scalar(FieldType type) {
     if (at_line_end())
       fail("fewer values than the header declares: expected another one (" + std::string(name_of(type)) + ")");
     const std::string_view text = word();
@@ -164,9 +166,9 @@ public:
     return static_cast<std::size_t>(count);
   }
   /// What nobody uses must be a number, but may break the promise of its type.
-  void skip(PlyType, std::size_t items) {
+  void skip(FieldType, std::size_t items) {
     for (std::size_t i = 0; i < items; ++i)
-      (void)scalar(PlyType::f64);
+      (void)scalar(FieldType::f64);
   }
 
   std::string trailing() {
@@ -240,9 +242,9 @@ private:
     return value;
   }
 
-  void check_whole(double value, PlyType type, std::string_view text) const {
+  void check_whole(double value, FieldType type, std::string_view text) const {
     const int bits = static_cast<int>(8 * size_of(type));
-    const bool is_signed = type == PlyType::i8 || type == PlyType::i16 || type == PlyType::i32;
+    const bool is_signed = type == FieldType::i8 || type == FieldType::i16 || type == FieldType::i32;
     const double low = is_signed ? -std::ldexp(1.0, bits - 1) : 0.0;
     const double high = std::ldexp(1.0, is_signed ? bits - 1 : bits) - 1.0;
     if (!(value >= low && value <= high) || value != std::floor(value))

@@ -12,24 +12,24 @@ namespace {
 
 struct TypeName {
   const char* name;
-  PlyType type;
+  FieldType type;
 };
-constexpr std::array<TypeName, 16> type_names{{{"char", PlyType::i8},
-                                               {"uchar", PlyType::u8},
-                                               {"short", PlyType::i16},
-                                               {"ushort", PlyType::u16},
-                                               {"int", PlyType::i32},
-                                               {"uint", PlyType::u32},
-                                               {"float", PlyType::f32},
-                                               {"double", PlyType::f64},
-                                               {"int8", PlyType::i8},
-                                               {"uint8", PlyType::u8},
-                                               {"int16", PlyType::i16},
-                                               {"uint16", PlyType::u16},
-                                               {"int32", PlyType::i32},
-                                               {"uint32", PlyType::u32},
-                                               {"float32", PlyType::f32},
-                                               {"float64", PlyType::f64}}};
+constexpr std::array<TypeName, 16> type_names{{{"char", FieldType::i8},
+                                               {"uchar", FieldType::u8},
+                                               {"short", FieldType::i16},
+                                               {"ushort", FieldType::u16},
+                                               {"int", FieldType::i32},
+                                               {"uint", FieldType::u32},
+                                               {"float", FieldType::f32},
+                                               {"double", FieldType::f64},
+                                               {"int8", FieldType::i8},
+                                               {"uint8", FieldType::u8},
+                                               {"int16", FieldType::i16},
+                                               {"uint16", FieldType::u16},
+                                               {"int32", FieldType::i32},
+                                               {"uint32", FieldType::u32},
+                                               {"float32", FieldType::f32},
+                                               {"float64", FieldType::f64}}};
 
 std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::string_view blanks = " \t\r\v\f";
@@ -169,7 +169,7 @@ private:
     header_.elements.back().properties.push_back(std::move(property));
   }
 
-  PlyType read_type(std::string_view word) const {
+  FieldType read_type(std::string_view word) const {
     for (const TypeName& known : type_names)
       if (word == known.name) return known.type;
     fail("unknown type " + quoted_bytes(word) +
@@ -197,30 +197,6 @@ const char* name_of(PlyFormat format) {
   case PlyFormat::binary_big_endian:
     return "binary_big_endian";
   }
-  return "unknown";
-}
-
-std::size_t size_of(PlyType type) {
-  switch (type) {
-  case PlyType::i8:
-  case PlyType::u8:
-    return 1;
-  case PlyType::i16:
-  case PlyType::u16:
-    return 2;
-  case PlyType::i32:
-  case PlyType::u32:
-  case PlyType::f32:
-    return 4;
-  case PlyType::f64:
-    return 8;
-  }
-  return 0;
-}
-
-const char* name_of(PlyType type) {
-  for (const TypeName& known : type_names)
-    if (known.type == type) return known.name;
   return "unknown";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 /// The header of a PLY file: what the body holds and where it begins. Nothing is allocated by its counts.
+#include "host/cloud/field.h"
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,20 +11,11 @@ namespace pointgi {
 enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
 const char* name_of(PlyFormat format);
 
-enum class PlyType { i8, u8, i16, u16, i32, u32, f32, f64 };
-/// Bytes of one value in a binary body.
-std::size_t size_of(PlyType type);
-/// The older of the two names: "uchar", "float" ...
-const char* name_of(PlyType type);
-inline bool is_float(PlyType type) {
-  return type == PlyType::f32 || type == PlyType::f64;
-}
-
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::f32;
+  FieldType type = FieldType::f32;
   bool is_list = false;
-  PlyType count_type = PlyType::u8; ///< of a list: never a float
+  FieldType count_type = FieldType::u8; ///< of a list: never a float
 };
 
 struct PlyElement {

@@ -1,7 +1,7 @@
-#include "host/cloud/precision.h"
 #include "host/cloud/readers/ply.h"
 #include "host/cloud/readers/ply_body.h"
 #include "host/cloud/readers/ply_layout.h"
+#include "host/cloud/readers/point_sink.h"
 #include "host/run.h"
 #include <algorithm>
 #include <limits>
@@ -10,12 +10,15 @@ namespace pointgi {
 
 namespace {
 
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
 /// Walks through the body, element by element in file order. `Body` is PlyBinaryBody or PlyAsciiBody.
 template <class Body>
 class Reader {
 public:
-  Reader(const PlyHeader& header, const PlyLayout& layout, Body body, PointCloud& cloud, CloudReport& report)
-      : header_(header), layout_(layout), body_(body), cloud_(cloud), report_(report),
+  Reader(const PlyHeader& header, const PlyLayout& layout, Body body, PointSink& sink, Triangles& triangles,
+         CloudReport& report)
+      : header_(header), layout_(layout), body_(body), sink_(sink), triangles_(triangles), report_(report),
         vertex_count_(header.elements[layout.vertex_element].count) {}
 
   void read() {
@@ -48,36 +51,31 @@ private:
 
   void read_vertices(const PlyElement& vertex) {
     const auto count = static_cast<std::size_t>(vertex.count);
-    cloud_.position.resize(count);
-    cloud_.normal.resize(layout_.has_normal ? count : 0);
-    cloud_.colour.resize(layout_.has_colour ? count : 0);
-    cloud_.radius.resize(layout_.has_radius ? count : 0);
-    std::array<double, slot_count> row{};
+    const FieldPlan& plan = layout_.plan;
+    std::vector<double> row(plan.fields.size());
     for (std::size_t i = 0; i < count; ++i) {
       if (i % 65536 == 0) stop_if_asked();
       body_.begin_record(vertex, i);
-      for (std::size_t p = 0; p < vertex.properties.size(); ++p) {
-        const PlyProperty& property = vertex.properties[p];
-        if (layout_.slots[p] == slot_none)
+      std::size_t field = 0;
+      for (const PlyProperty& property : vertex.properties) {
+        if (property.is_list) {
           skip_property(property);
+          continue;
+        }
+        if (plan.is_read(field))
+          row[field] = body_.scalar(plan.fields[field].type);
         else
-          row[static_cast<std::size_t>(layout_.slots[p])] = body_.scalar(property.type);
+          skip_property(property);
+        ++field;
       }
       body_.end_record();
-      cloud_.position[i] = Eigen::Vector3d(row[slot_position], row[slot_position + 1], row[slot_position + 2]);
-      if (layout_.has_normal) cloud_.normal[i] = vector_at(row, slot_normal);
-      if (layout_.has_colour) cloud_.colour[i] = vector_at(row, slot_colour);
-      if (layout_.has_radius) cloud_.radius[i] = static_cast<float>(row[slot_radius]);
+      sink_.put(i, row.data());
     }
-  }
-
-  static Eigen::Vector3f vector_at(const std::array<double, slot_count>& row, int slot) {
-    return Eigen::Vector3d(row[slot], row[slot + 1], row[slot + 2]).cast<float>();
   }
 
   void read_faces(const PlyElement& element, std::size_t list, bool strips) {
     // A face takes at least as many bytes as its count, which was checked against the file's size.
-    if (!strips) cloud_.triangle.reserve(static_cast<std::size_t>(element.count));
+    if (!strips) triangles_.reserve(static_cast<std::size_t>(element.count));
     for (std::uint64_t i = 0; i < element.count; ++i) {
       body_.begin_record(element, i);
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -114,8 +112,7 @@ private:
   }
 
   void add_triangle(std::int64_t a, std::int64_t b, std::int64_t c) {
-    cloud_.triangle.push_back(
-        {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
+    triangles_.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
   }
 
   void add_fan() {
@@ -168,7 +165,8 @@ private:
   const PlyHeader& header_;
   const PlyLayout& layout_;
   Body body_;
-  PointCloud& cloud_;
+  PointSink& sink_;
+  Triangles& triangles_;
   CloudReport& report_;
   std::uint64_t vertex_count_;
   std::vector<std::int64_t> indices_; ///< of the face being read
@@ -176,67 +174,30 @@ private:
   std::size_t faces_too_small_ = 0;
 };
 
-/// Brings the colours to [0,1] by the type they have in the file. Values that are not finite stay what they are.
-void scale_colours(const PlyLayout& layout, std::vector<Eigen::Vector3f>& colours, CloudReport& report) {
-  Eigen::Array3f scale;
-  float largest_float = 0.0f;
-  float largest_short = 0.0f;
-  bool any_short = false;
-  for (int k = 0; k < 3; ++k) {
-    const PlyType type = layout.colour_type[static_cast<std::size_t>(k)];
-    scale[k] = is_float(type) ? 1.0f : type == PlyType::u16 ? 1.0f / 65535.0f : 1.0f / 255.0f;
-    any_short = any_short || type == PlyType::u16;
-    float& largest = is_float(type) ? largest_float : largest_short;
-    if (is_float(type) || type == PlyType::u16)
-      for (const Eigen::Vector3f& colour : colours)
-        if (std::isfinite(colour[k])) largest = std::max(largest, colour[k]);
-  }
-  // A thousandth of grace: a conversion elsewhere may have rounded white up, and that is no sign of 0..255.
-  if (largest_float > 1.001f) {
-    for (int k = 0; k < 3; ++k)
-      if (is_float(layout.colour_type[static_cast<std::size_t>(k)])) scale[k] = 1.0f / 255.0f;
-    report.warnings.push_back("the colours are floats up to " + std::to_string(largest_float) +
-                              ", expected 0 to 1; they were taken as 0 to 255. Divide them by 255 or store them as "
-                              "uchar to be sure.");
-  }
-  if (any_short && largest_short > 0.0f && largest_short <= 255.0f)
-    report.warnings.push_back("the colours are of type ushort but none is above 255, so that they come out nearly "
-                              "black; store them as uchar if they are meant as 0 to 255.");
-  for (Eigen::Vector3f& colour : colours)
-    for (int k = 0; k < 3; ++k)
-      if (std::isfinite(colour[k])) colour[k] = std::clamp(colour[k] * scale[k], 0.0f, 1.0f);
-}
-
 } // namespace
 
-PointCloud read_ply(const std::string& path, const ReadRequest&, CloudReport& report) {
-  PointCloud cloud;
-  PlyLayout layout;
-  {
-    // In a block of its own: the file's bytes are given back before the passes over the cloud.
-    const FileBytes bytes = read_whole_file(path);
-    const PlyHeader header = parse_ply_header(bytes.data.get(), bytes.size, path);
-    report.format = std::string("PLY 1.0 ") + name_of(header.format);
-    layout = plan_ply(header, path, report);
-    const PlyElement& vertex = header.elements[layout.vertex_element];
-    if (vertex.count == 0)
-      throw Error(ErrorKind::input, path + ": line " + std::to_string(vertex.line) +
-                                        ": the cloud is empty (element vertex 0); expected one point or more");
-    check_ply_counts(header, bytes.size, path);
-    if (vertex.count > std::numeric_limits<std::uint32_t>::max())
-      throw Error(ErrorKind::input, path + ": line " + std::to_string(vertex.line) + ": " +
-                                        std::to_string(vertex.count) +
-                                        " points, expected at most 4294967295; thin the cloud out or split it");
-    report.points_in_file = static_cast<std::size_t>(vertex.count);
-    if (header.format == PlyFormat::ascii)
-      Reader<PlyAsciiBody>(header, layout, PlyAsciiBody(header, bytes, path), cloud, report).read();
-    else
-      Reader<PlyBinaryBody>(header, layout, PlyBinaryBody(header, bytes, path), cloud, report).read();
-  }
+PointCloud read_ply(const std::string& path, const ReadRequest& request, CloudReport& report) {
+  const FileBytes bytes = read_whole_file(path);
+  const PlyHeader header = parse_ply_header(bytes.data.get(), bytes.size, path);
+  report.format = std::string("PLY 1.0 ") + name_of(header.format);
+  const PlyLayout layout = plan_ply(header, request, path, report);
+  const PlyElement& vertex = header.elements[layout.vertex_element];
+  if (vertex.count == 0)
+    throw Error(ErrorKind::input, path + ": line " + std::to_string(vertex.line) +
+                                      ": the cloud is empty (element vertex 0); expected one point or more");
+  check_ply_counts(header, bytes.size, path);
+  if (vertex.count > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ErrorKind::input, path + ": line " + std::to_string(vertex.line) + ": " + std::to_string(vertex.count) +
+                                      " points, expected at most 4294967295; thin the cloud out or split it");
+  PointSink sink(layout.plan, static_cast<std::size_t>(vertex.count), path);
+  Triangles triangles;
+  if (header.format == PlyFormat::ascii)
+    Reader<PlyAsciiBody>(header, layout, PlyAsciiBody(header, bytes, path), sink, triangles, report).read();
+  else
+    Reader<PlyBinaryBody>(header, layout, PlyBinaryBody(header, bytes, path), sink, triangles, report).read();
+  PointCloud cloud = sink.finish(report);
+  cloud.triangle = std::move(triangles);
   report.triangles = cloud.triangle.size();
-  if (layout.has_colour) scale_colours(layout, cloud.colour, report);
-  if (const auto warning = float_precision_warning(cloud.position, layout.is_float32))
-    report.warnings.push_back(*warning);
   return cloud;
 }
 

@@ -44,25 +44,25 @@ TEST_CASE("ply header: elements, properties and where the body begins") {
   const std::vector<PlyProperty>& face = header.elements[1].properties;
   REQUIRE(face.size() == 2);
   CHECK(face[0].is_list);
-  CHECK(face[0].count_type == PlyType::u8);
-  CHECK(face[0].type == PlyType::i32);
-  CHECK(face[1].type == PlyType::f64);
+  CHECK(face[0].count_type == FieldType::u8);
+  CHECK(face[0].type == FieldType::i32);
+  CHECK(face[1].type == FieldType::f64);
   CHECK(header.body_offset == text.size());
   CHECK(header.body_line == 13);
 }
 
 TEST_CASE("ply header: all sixteen type names") {
-  const std::vector<std::pair<std::string, PlyType>> types{
-      {"char", PlyType::i8},   {"int8", PlyType::i8},     {"uchar", PlyType::u8},   {"uint8", PlyType::u8},
-      {"short", PlyType::i16}, {"int16", PlyType::i16},   {"ushort", PlyType::u16}, {"uint16", PlyType::u16},
-      {"int", PlyType::i32},   {"int32", PlyType::i32},   {"uint", PlyType::u32},   {"uint32", PlyType::u32},
-      {"float", PlyType::f32}, {"float32", PlyType::f32}, {"double", PlyType::f64}, {"float64", PlyType::f64}};
+  const std::vector<std::pair<std::string, FieldType>> types{
+      {"char", FieldType::i8},   {"int8", FieldType::i8},     {"uchar", FieldType::u8},   {"uint8", FieldType::u8},
+      {"short", FieldType::i16}, {"int16", FieldType::i16},   {"ushort", FieldType::u16}, {"uint16", FieldType::u16},
+      {"int", FieldType::i32},   {"int32", FieldType::i32},   {"uint", FieldType::u32},   {"uint32", FieldType::u32},
+      {"float", FieldType::f32}, {"float32", FieldType::f32}, {"double", FieldType::f64}, {"float64", FieldType::f64}};
   for (const auto& [name, type] : types)
     CHECK(parse(start + "element vertex 0\nproperty " + name + " x\nend_header\n").elements[0].properties[0].type ==
           type);
-  CHECK(size_of(PlyType::u16) == 2);
-  CHECK(size_of(PlyType::f64) == 8);
-  CHECK(std::string(name_of(PlyType::f32)) == "float");
+  CHECK(size_of(FieldType::u16) == 2);
+  CHECK(size_of(FieldType::f64) == 8);
+  CHECK(std::string(name_of(FieldType::f32)) == "float");
 }
 
 TEST_CASE("ply header: lines end in LF or CRLF or CR and the body begins after one line end") {
