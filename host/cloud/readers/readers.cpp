@@ -4,45 +4,95 @@
 #include "host/cloud/readers/ply.h"
 #include "host/error.h"
 #include <algorithm>
+#include <string_view>
 
 namespace pointgi {
 
 namespace {
+
+bool begins_with(const char* data, std::size_t size, std::string_view magic) {
+  return std::string_view(data, size).substr(0, magic.size()) == magic;
+}
+
+bool is_ply(const char* data, std::size_t size) {
+  return begins_with(data, size, "ply\n") || begins_with(data, size, "ply\r");
+}
+
+/// LAS and LAZ have one header; compressors set the highest bits of the point format.
+bool is_las_family(const char* data, std::size_t size) {
+  return begins_with(data, size, "LASF") && size > 104;
+}
+bool is_las(const char* data, std::size_t size) {
+  return is_las_family(data, size) && (static_cast<unsigned char>(data[104]) & 0xc0) == 0;
+}
+bool is_laz(const char* data, std::size_t size) {
+  return is_las_family(data, size) && (static_cast<unsigned char>(data[104]) & 0xc0) != 0;
+}
+
+bool is_e57(const char* data, std::size_t size) {
+  return begins_with(data, size, "ASTM-E57");
+}
+
+const char* const import_it = "make a PLY file of it: `scripts/import SCAN OUT.ply`";
+const char* const export_it = "export it as E57, LAS or PLY with the program that wrote it";
+
+std::string with_path(std::string text, const std::string& path) {
+  const std::size_t at = text.find("SCAN");
+  return at == std::string::npos ? text : text.replace(at, 4, path);
+}
 
 bool has_extension_of(const std::string& path, const CloudReader& reader) {
   return std::any_of(reader.extensions.begin(), reader.extensions.end(),
                      [&](const std::string& extension) { return has_extension(path, extension); });
 }
 
-PointCloud read_with(const CloudReader& reader, const std::string& path, const ReadRequest& request,
-                     CloudReport& report) {
-  if (reader.read != nullptr) return reader.read(path, request, report);
-  throw Error(ErrorKind::input, path + ": " + reader.format +
-                                    " is not read directly; convert it to PLY first, with `pdal translate` or "
-                                    "CloudCompare");
+/// The row whose job the file is; null: a mesh, if anything.
+const CloudReader* reader_of(const std::string& path) {
+  const InputFile file(path);
+  char begin[4096];
+  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), sizeof begin));
+  file.read(0, begin, size);
+  const CloudReader* by_extension = nullptr;
+  const CloudReader* by_content = nullptr;
+  for (const CloudReader& reader : cloud_readers()) {
+    const bool recognised = reader.recognises != nullptr && reader.recognises(begin, size);
+    const bool named = has_extension_of(path, reader);
+    if (recognised && named) return &reader;
+    if (named) by_extension = &reader;
+    if (recognised && by_content == nullptr) by_content = &reader;
+  }
+  return by_content != nullptr ? by_content : by_extension;
 }
 
 } // namespace
 
 const std::vector<CloudReader>& cloud_readers() {
   static const std::vector<CloudReader> readers{
-      {"PLY", {".ply"}, nullptr, read_ply},
-      // Scanners' own formats are for the programs that know them; the mesh library's answer would only puzzle.
-      {"LAS", {".las"}, nullptr, nullptr},
-      {"LAZ", {".laz"}, nullptr, nullptr},
-      {"E57", {".e57"}, nullptr, nullptr},
+      {"PLY", {".ply"}, is_ply, read_ply},
+      {"LAS", {".las"}, is_las, nullptr, import_it},
+      {"LAZ", {".laz"}, is_laz, nullptr, import_it},
+      {"E57", {".e57"}, is_e57, nullptr, import_it},
       {"PCD", {".pcd"}, nullptr, nullptr},
       {"PTS", {".pts"}, nullptr, nullptr},
       {"PTX", {".ptx"}, nullptr, nullptr},
       {"XYZ", {".xyz"}, nullptr, nullptr},
+      // Only the programs that wrote these know them; the mesh library's answer would only puzzle.
+      {"a project of ReCap", {".rcp", ".rcs"}, nullptr, nullptr, export_it},
+      {"a scan of FARO", {".fls", ".fws"}, nullptr, nullptr, export_it},
+      {"a scan of Z+F", {".zfs"}, nullptr, nullptr, export_it},
+      {"a packed file", {".gz", ".bz2", ".xz", ".zst", ".zip", ".7z", ".tar", ".tgz"}, nullptr, nullptr,
+       "unpack it first"},
   };
   return readers;
 }
 
 PointCloud read_cloud(const std::string& path, const ReadRequest& request, CloudReport& report) {
-  for (const CloudReader& reader : cloud_readers())
-    if (has_extension_of(path, reader)) return read_with(reader, path, request, report);
-  return sample_mesh(path, request.spacing, report);
+  const CloudReader* reader = reader_of(path);
+  if (reader == nullptr) return sample_mesh(path, request.spacing, report);
+  if (reader->read != nullptr) return reader->read(path, request, report);
+  const char* instead = reader->instead != nullptr ? reader->instead : "convert it to PLY, with CloudCompare or PDAL";
+  throw Error(ErrorKind::input,
+              path + ": " + reader->format + " is not read directly; " + with_path(instead, path));
 }
 
 } // namespace pointgi

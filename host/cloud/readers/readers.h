@@ -20,12 +20,14 @@ struct CloudReader {
   bool (*recognises)(const char* data, std::size_t size);
   /// The points of the file, with what it says of them; null: the format is known and not read. Throws Error(input).
   PointCloud (*read)(const std::string& path, const ReadRequest& request, CloudReport& report);
+  /// Of a format that is not read: what to do instead; SCAN stands for the file's path.
+  const char* instead = nullptr;
 };
 
 const std::vector<CloudReader>& cloud_readers();
 
-/// Reads the file: by its extension where a row has that and the content does not speak against it, else by its
-/// content, else as a mesh. Throws Error(input), for a format that is known and not read with what to do instead.
+/// Reads the file: by its extension, unless the content is recognisably another row's; without a row for the
+/// extension by its content, else as a mesh. Throws Error(input), for a format that is known and not read with what to do instead.
 PointCloud read_cloud(const std::string& path, const ReadRequest& request, CloudReport& report);
 
 } // namespace pointgi

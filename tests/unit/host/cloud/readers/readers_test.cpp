@@ -34,9 +34,41 @@ TEST_CASE("a file is read by its extension, whatever its case", "[readers]") {
   CHECK(mesh.size() < 60);
 }
 
-TEST_CASE("a scanner's own format is named, with what to do", "[readers]") {
+/// The first bytes of a LAS file, whose points are packed or not.
+std::string las_begin(bool packed) {
+  std::string bytes(227, '\0');
+  bytes.replace(0, 4, "LASF");
+  bytes[104] = static_cast<char>(packed ? 0x83 : 0x03);
+  return bytes;
+}
+
+TEST_CASE("a scanner's own format is named, with the command that makes a PLY file of it", "[readers]") {
+  const TemporaryFolder folder;
   CloudReport report;
-  for (const char* name : {"scan.las", "scan.E57"})
-    CHECK_THROWS_WITH(read_cloud(name, {}, report),
-                      Contains(name) && Contains("is not read directly") && Contains("convert it to PLY"));
+  for (const char* name : {"scan.laz", "scan.copc.laz", "scan.E57"}) {
+    const std::string path = folder.write(name, "anything");
+    CHECK_THROWS_WITH(read_cloud(path, {}, report),
+                      Contains("is not read directly") && Contains("`scripts/import " + path + " OUT.ply`"));
+  }
+  CHECK_THROWS_WITH(read_cloud(folder.write("scan.ply.gz", "\x1f\x8b"), {}, report), Contains("unpack it first"));
+  CHECK_THROWS_WITH(read_cloud(folder.write("scan.fls", "?"), {}, report), Contains("export it as E57"));
+  CHECK_THROWS_WITH(read_cloud(folder.file("none.e57"), {}, report), Contains("cannot read the file"));
+}
+
+TEST_CASE("what a file holds decides where its name says something else", "[readers]") {
+  const TemporaryFolder folder;
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float "
+                          "z\nend_header\n1 2 3\n";
+  for (const char* name : {"a.las", "a.xyz", "a.obj", "a"}) {
+    INFO(name);
+    CloudReport report;
+    CHECK(read_cloud(folder.write(name, ply), {}, report).size() == 1);
+  }
+  CloudReport report;
+  CHECK_THROWS_WITH(read_cloud(folder.write("packed.las", las_begin(true)), {}, report),
+                    Contains("LAZ is not read directly"));
+  CHECK_THROWS_WITH(read_cloud(folder.write("no_laz.laz", las_begin(false)), {}, report),
+                    !Contains("LAZ is not read directly"));
+  CHECK_THROWS_WITH(read_cloud(folder.write("b.ply", "ASTM-E57 and more"), {}, report),
+                    Contains("E57 is not read directly"));
 }
