@@ -52,8 +52,10 @@ public:
     while (true) {
       const std::string_view line = next_line();
       const std::vector<std::string_view> words = words_of(line);
-      if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
-      if (words[0] == "format")
+      if (words.empty() || words[0] == "obj_info") continue;
+      if (words[0] == "comment")
+        read_comment(words);
+      else if (words[0] == "format")
         read_format(words);
       else if (words[0] == "element")
         read_element(words);
@@ -106,6 +108,13 @@ private:
     // A last line without its end can only be complete when it is end_header; the counts then tell the rest.
     at_ = end == std::string_view::npos ? text_.size() : end + 1;
     return line;
+  }
+
+  /// A comment may say anything: what is not understood is no error.
+  void read_comment(const std::vector<std::string_view>& words) {
+    if (words.size() == 4 && words[1] == "pointgi" && words[2] == "up" && words[3].size() == 1 && words[3][0] >= 'x' &&
+        words[3][0] <= 'z')
+      header_.up = words[3][0] - 'x';
   }
 
   void read_format(const std::vector<std::string_view>& words) {

@@ -30,6 +30,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements; ///< in file order; names differ
   std::size_t body_offset = 0;      ///< the byte after the one line end of end_header
   std::size_t body_line = 0;        ///< number of the line that begins there
+  int up = -1;                      ///< axis of a line "comment pointgi up z", as scripts/import writes; -1: none
 };
 
 /// Reads the header from the first `size` bytes at `data`. Lines end in LF, CRLF or CR, as the first one does.

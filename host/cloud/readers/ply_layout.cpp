@@ -1,5 +1,6 @@
 #include "host/cloud/readers/ply_layout.h"
 #include "host/cloud/input_file.h"
+#include <algorithm>
 
 namespace pointgi {
 
@@ -28,6 +29,27 @@ std::size_t find_index_list(const PlyElement& element) {
   return PlyLayout::none;
 }
 
+/// Takes the element as scanner positions, if it has single numbers x, y and z.
+void find_stations(const PlyElement& element, std::size_t index, const std::string& file, PlyLayout& layout) {
+  constexpr const char* names[] = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto found = std::find_if(element.properties.begin(), element.properties.end(),
+                                    [&](const PlyProperty& p) { return !p.is_list && p.name == names[axis]; });
+    if (found == element.properties.end()) return;
+    layout.station_axes[axis] = static_cast<std::size_t>(found - element.properties.begin());
+  }
+  if (element.count > 65535) // of which 16 bits can be an index
+    throw Error(ErrorKind::input, file + ": line " + std::to_string(element.line) + ": " +
+                                      std::to_string(element.count) +
+                                      " scanner positions, expected at most 65535; split the scan");
+  if (element.count > 0) layout.station_element = index;
+}
+
+bool is_station_axis(const PlyLayout& layout, std::size_t element, std::size_t property) {
+  const auto& axes = layout.station_axes;
+  return element == layout.station_element && std::find(axes.begin(), axes.end(), property) != axes.end();
+}
+
 std::string describe(const PlyElement& element, const PlyProperty& property) {
   std::string type = name_of(property.type);
   if (property.is_list) type = std::string("list ") + name_of(property.count_type) + " " + type;
@@ -45,6 +67,8 @@ PlyLayout plan_ply(const PlyHeader& header, const ReadRequest& request, const st
     } else if (element.name == "face") {
       layout.face_list = find_index_list(element);
       layout.face_element = layout.face_list == PlyLayout::none ? PlyLayout::none : e;
+    } else if (element.name == "station") {
+      find_stations(element, e, file, layout);
     } else if (element.name == "tristrips") {
       layout.strip_list = find_index_list(element);
       layout.strip_element = layout.strip_list == PlyLayout::none ? PlyLayout::none : e;
@@ -55,7 +79,7 @@ PlyLayout plan_ply(const PlyHeader& header, const ReadRequest& request, const st
                                       ": the header declares no element vertex; expected \"element vertex COUNT\" "
                                       "with the properties x, y and z");
   layout.plan = plan_vertex(header, header.elements[layout.vertex_element], request, file);
-  layout.plan.forget(slot_station); // no element of a file gives the positions
+  if (layout.station_element == PlyLayout::none) layout.plan.forget(slot_station); // an index into nothing
   report_fields(layout.plan, report);
 
   for (std::size_t e = 0; e < header.elements.size(); ++e) {
@@ -69,6 +93,8 @@ PlyLayout plan_ply(const PlyHeader& header, const ReadRequest& request, const st
         use = "faces";
       else if (e == layout.strip_element && p == layout.strip_list)
         use = "faces (strips)";
+      else if (is_station_axis(layout, e, p))
+        use = "scanner position";
       report.properties.push_back({describe(element, element.properties[p]), use});
     }
   }

@@ -11,15 +11,16 @@ namespace pointgi {
 namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+using Stations = std::vector<Eigen::Vector3d>;
 
 /// Walks through the body, element by element in file order. `Body` is PlyBinaryBody or PlyAsciiBody.
 template <class Body>
 class Reader {
 public:
   Reader(const PlyHeader& header, const PlyLayout& layout, Body body, PointSink& sink, Triangles& triangles,
-         CloudReport& report)
-      : header_(header), layout_(layout), body_(body), sink_(sink), triangles_(triangles), report_(report),
-        vertex_count_(header.elements[layout.vertex_element].count) {}
+         Stations& stations, CloudReport& report)
+      : header_(header), layout_(layout), body_(body), sink_(sink), triangles_(triangles), stations_(stations),
+        report_(report), vertex_count_(header.elements[layout.vertex_element].count) {}
 
   void read() {
     for (std::size_t e = 0; e < header_.elements.size(); ++e) {
@@ -29,6 +30,8 @@ public:
         read_faces(header_.elements[e], layout_.face_list, false);
       else if (e == layout_.strip_element)
         read_faces(header_.elements[e], layout_.strip_list, true);
+      else if (e == layout_.station_element)
+        read_stations(header_.elements[e]);
       else
         skip_element(header_.elements[e]);
     }
@@ -53,6 +56,8 @@ private:
     const auto count = static_cast<std::size_t>(vertex.count);
     const FieldPlan& plan = layout_.plan;
     std::vector<double> row(plan.fields.size());
+    const auto station_field = static_cast<std::size_t>(
+        std::find(plan.slot.begin(), plan.slot.end(), static_cast<int>(slot_station)) - plan.slot.begin());
     for (std::size_t i = 0; i < count; ++i) {
       if (i % 65536 == 0) stop_if_asked();
       body_.begin_record(vertex, i);
@@ -69,7 +74,33 @@ private:
         ++field;
       }
       body_.end_record();
+      if (station_field < row.size()) check_station(row[station_field]);
       sink_.put(i, row.data());
+    }
+  }
+
+  void check_station(double index) {
+    const double count = static_cast<double>(header_.elements[layout_.station_element].count);
+    if (!(index >= 0.0 && index < count) || index != std::floor(index))
+      body_.fail_record("the index of its station is " + text_of(index) + ", expected 0 to " + text_of(count - 1.0) +
+                        "; the file is corrupt");
+  }
+
+  void read_stations(const PlyElement& element) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      body_.begin_record(element, i);
+      Eigen::Vector3d position = Eigen::Vector3d::Zero();
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const auto& axes = layout_.station_axes;
+        const auto axis = std::find(axes.begin(), axes.end(), p);
+        if (axis == axes.end())
+          skip_property(element.properties[p]);
+        else
+          position[axis - axes.begin()] = body_.scalar(element.properties[p].type);
+      }
+      body_.end_record();
+      if (!position.allFinite()) body_.fail_record("a scanner position is not finite; remove the element station");
+      stations_.push_back(position);
     }
   }
 
@@ -167,6 +198,7 @@ private:
   Body body_;
   PointSink& sink_;
   Triangles& triangles_;
+  Stations& stations_;
   CloudReport& report_;
   std::uint64_t vertex_count_;
   std::vector<std::int64_t> indices_; ///< of the face being read
@@ -191,13 +223,17 @@ PointCloud read_ply(const std::string& path, const ReadRequest& request, CloudRe
                                       " points, expected at most 4294967295; thin the cloud out or split it");
   PointSink sink(layout.plan, static_cast<std::size_t>(vertex.count), path);
   Triangles triangles;
+  Stations stations;
   if (header.format == PlyFormat::ascii)
-    Reader<PlyAsciiBody>(header, layout, PlyAsciiBody(header, bytes, path), sink, triangles, report).read();
+    Reader<PlyAsciiBody>(header, layout, PlyAsciiBody(header, bytes, path), sink, triangles, stations, report).read();
   else
-    Reader<PlyBinaryBody>(header, layout, PlyBinaryBody(header, bytes, path), sink, triangles, report).read();
+    Reader<PlyBinaryBody>(header, layout, PlyBinaryBody(header, bytes, path), sink, triangles, stations, report).read();
   PointCloud cloud = sink.finish(report);
   cloud.triangle = std::move(triangles);
   report.triangles = cloud.triangle.size();
+  report.stations = stations;
+  cloud.stations = std::move(stations);
+  if (header.up >= 0) report.up = Eigen::Vector3d::Unit(header.up);
   return cloud;
 }
 

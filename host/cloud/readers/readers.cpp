@@ -80,7 +80,10 @@ const std::vector<CloudReader>& cloud_readers() {
       {"a project of ReCap", {".rcp", ".rcs"}, nullptr, nullptr, export_it},
       {"a scan of FARO", {".fls", ".fws"}, nullptr, nullptr, export_it},
       {"a scan of Z+F", {".zfs"}, nullptr, nullptr, export_it},
-      {"a packed file", {".gz", ".bz2", ".xz", ".zst", ".zip", ".7z", ".tar", ".tgz"}, nullptr, nullptr,
+      {"a packed file",
+       {".gz", ".bz2", ".xz", ".zst", ".zip", ".7z", ".tar", ".tgz"},
+       nullptr,
+       nullptr,
        "unpack it first"},
   };
   return readers;
@@ -91,8 +94,7 @@ PointCloud read_cloud(const std::string& path, const ReadRequest& request, Cloud
   if (reader == nullptr) return sample_mesh(path, request.spacing, report);
   if (reader->read != nullptr) return reader->read(path, request, report);
   const char* instead = reader->instead != nullptr ? reader->instead : "convert it to PLY, with CloudCompare or PDAL";
-  throw Error(ErrorKind::input,
-              path + ": " + reader->format + " is not read directly; " + with_path(instead, path));
+  throw Error(ErrorKind::input, path + ": " + reader->format + " is not read directly; " + with_path(instead, path));
 }
 
 } // namespace pointgi

@@ -27,7 +27,8 @@ struct CloudReader {
 const std::vector<CloudReader>& cloud_readers();
 
 /// Reads the file: by its extension, unless the content is recognisably another row's; without a row for the
-/// extension by its content, else as a mesh. Throws Error(input), for a format that is known and not read with what to do instead.
+/// extension by its content, else as a mesh. Throws Error(input), for a format that is known and not read with what to
+/// do instead.
 PointCloud read_cloud(const std::string& path, const ReadRequest& request, CloudReport& report);
 
 } // namespace pointgi
