@@ -1,5 +1,6 @@
 #include "host/cloud/readers/ply_header.h"
 #include "host/cloud/input_file.h"
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
@@ -213,7 +214,27 @@ PlyHeader parse_ply_header(const char* data, std::size_t size, const std::string
   return HeaderParser(data, size, file).parse();
 }
 
-void check_ply_counts(const PlyHeader& header, std::size_t file_size, const std::string& file) {
+PlyHeader read_ply_header(const InputFile& file) {
+  constexpr std::uint64_t longest = std::uint64_t{64} << 20;
+  std::vector<char> start;
+  for (std::uint64_t bytes = 65536;; bytes *= 8) {
+    start.resize(static_cast<std::size_t>(std::min({bytes, longest, file.size()})));
+    file.read(0, start.data(), start.size());
+    const bool is_all = start.size() == file.size() || std::string_view(start.data(), 3) != "ply";
+    try {
+      PlyHeader header = parse_ply_header(start.data(), start.size(), file.path());
+      // One that ends where we stopped may have its last line end after that.
+      if (is_all || header.body_offset < start.size()) return header;
+    } catch (const Error&) {
+      if (is_all) throw;
+    }
+    if (bytes >= longest)
+      throw Error(ErrorKind::input, file.path() + ": line 1: the header does not end within 64 MiB, or has a fault in "
+                                                  "these; this is no PLY file that a scanner wrote");
+  }
+}
+
+void check_ply_counts(const PlyHeader& header, std::uint64_t file_size, const std::string& file) {
   const bool ascii = header.format == PlyFormat::ascii;
   // The last line of an ascii file may lack its end: one byte of grace.
   std::uint64_t left = file_size - header.body_offset + (ascii ? 1 : 0);

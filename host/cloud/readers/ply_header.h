@@ -1,6 +1,7 @@
 #pragma once
 /// The header of a PLY file: what the body holds and where it begins. Nothing is allocated by its counts.
 #include "host/cloud/field.h"
+#include "host/cloud/input_file.h"
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -37,8 +38,11 @@ struct PlyHeader {
 /// Throws Error(input): "<file>: line N: what was expected, what was found".
 PlyHeader parse_ply_header(const char* data, std::size_t size, const std::string& file);
 
+/// As parse_ply_header(), of as much of the file as the header takes. Headers of more than 64 MiB are refused.
+PlyHeader read_ply_header(const InputFile& file);
+
 /// Throws Error(input) when the elements cannot fit into the bytes after the header, whatever these hold: a record
 /// takes at least the sizes of its scalars and list counts (binary) or two bytes a value (ascii: a digit, a blank).
-void check_ply_counts(const PlyHeader& header, std::size_t file_size, const std::string& file);
+void check_ply_counts(const PlyHeader& header, std::uint64_t file_size, const std::string& file);
 
 } // namespace pointgi

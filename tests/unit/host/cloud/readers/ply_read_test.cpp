@@ -382,37 +382,3 @@ TEST_CASE("ply read: only regular files are opened") {
     }
   }
 }
-
-namespace {
-
-/// Three points seen by two scanners, as scripts/import writes it; `stations` is the element's count and body.
-std::string stations_ply(const std::string& stations, const std::string& last_index) {
-  const std::size_t line_end = stations.find('\n');
-  return "ply\nformat ascii 1.0\ncomment pointgi up z\nelement station " + stations.substr(0, line_end) +
-         "\nproperty double x\nproperty double y\nproperty double z\nelement vertex 3\nproperty double x\nproperty "
-         "double y\nproperty double z\nproperty ushort station\nend_header" +
-         stations.substr(line_end) + "\n0 0 0 0\n1 0 0 1\n2 0 0 " + last_index + "\n";
-}
-
-} // namespace
-
-TEST_CASE("ply read: scanner positions, an index to them for every point, and up") {
-  const TemporaryFolder folder;
-  CloudReport report;
-  const PointCloud cloud = read_ply(folder.write("a.ply", stations_ply("2\n4e6 0.5 1\n-1 -2 -3", "1")), {}, report);
-  REQUIRE(cloud.stations.size() == 2);
-  CHECK(cloud.stations[0] == Eigen::Vector3d(4e6, 0.5, 1));
-  CHECK(cloud.stations[1] == Eigen::Vector3d(-1, -2, -3));
-  CHECK(report.stations == cloud.stations);
-  CHECK(cloud.station == std::vector<std::uint16_t>{0, 1, 1});
-  CHECK(report.up == Eigen::Vector3d(0, 0, 1));
-  CHECK_THROWS_WITH(read_ply(folder.write("b.ply", stations_ply("2\n0 0 0\n1 1 1", "2")), {}, report),
-                    Contains("line 18") && Contains("the index of its station is 2, expected 0 to 1"));
-  CHECK_THROWS_WITH(read_ply(folder.write("c.ply", stations_ply("1\n0 nan 0", "0")), {}, report),
-                    Contains("a scanner position is not finite"));
-  // An index to nothing is a field like others.
-  CloudReport none;
-  const PointCloud plain = read_ply(folder.write("d.ply", stations_ply("0\n", "7")), {}, none);
-  CHECK(plain.stations.empty());
-  CHECK(plain.station.empty());
-}
