@@ -17,8 +17,8 @@ using pointgi::test::TemporaryFolder;
 
 namespace {
 
-/// Small files with everything that the reader knows, one a format.
-std::vector<std::string> seed_files() {
+/// Small files with lists in vertices, faces and strips, one a format.
+std::vector<std::string> seeds_with_lists() {
   const std::string rest = " 1.0\ncomment seed\nobj_info none\nelement vertex 4\nproperty float x\nproperty double y\n"
                            "property short z\nproperty float nx\nproperty float ny\nproperty float nz\n"
                            "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float radius\n"
@@ -53,6 +53,45 @@ std::vector<std::string> seed_files() {
   return seeds;
 }
 
+/// Small files of vertices of one length, with stations before and faces with colours behind them, one a format.
+std::vector<std::string> seeds_of_fixed_length() {
+  const std::string rest =
+      " 1.0\ncomment pointgi up z\nelement station 2\nproperty double x\nproperty double y\nproperty double z\n"
+      "element camera 1\nproperty float focal\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float normalx\nproperty float normaly\nproperty float normalz\nproperty float scalar_Intensity\n"
+      "property ushort station\nproperty double time\nelement face 4\nproperty list uchar int vertex_indices\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  std::string ascii = "ply\nformat ascii" + rest + "0 0 1\n1 1 1\n35\n";
+  for (int i = 0; i < 4; ++i)
+    ascii += std::to_string(i) + ".5 -1e3 7 0 0.6 0.8 17 1 1e9\n";
+  for (int i = 0; i < 4; ++i)
+    ascii += "3 0 1 2 190 80 50\n";
+  std::vector<std::string> seeds{ascii};
+  for (const bool big : {false, true}) {
+    std::string binary = std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") + rest;
+    for (const double value : {0.0, 0.0, 1.0, 1.0, 1.0, 1.0})
+      binary += bytes_of(value, big);
+    binary += bytes_of(35.0f, big);
+    for (int i = 0; i < 4; ++i) {
+      for (const float value : {static_cast<float>(i), -1e3f, 7.0f, 0.0f, 0.6f, 0.8f, 17.0f})
+        binary += bytes_of(value, big);
+      binary += bytes_of<std::uint16_t>(1, big) + bytes_of(1e9, big);
+    }
+    for (int i = 0; i < 4; ++i)
+      binary += "\3" + bytes_of<std::int32_t>(0, big) + bytes_of<std::int32_t>(1, big) +
+                bytes_of<std::int32_t>(2, big) + "\xbe\x50\x32";
+    seeds.push_back(binary);
+  }
+  return seeds;
+}
+
+std::vector<std::string> seed_files() {
+  std::vector<std::string> seeds = seeds_with_lists();
+  for (const std::string& seed : seeds_of_fixed_length())
+    seeds.push_back(seed);
+  return seeds;
+}
+
 /// Reads the file; fails the test unless the outcome is one of the two that are allowed. True when it was a cloud.
 bool survives(const std::string& path, std::size_t file_size) {
   CloudReport report;
@@ -67,7 +106,8 @@ bool survives(const std::string& path, std::size_t file_size) {
     for (const auto& corners : cloud.triangle)
       for (const std::uint32_t corner : corners)
         REQUIRE(corner < cloud.size());
-    for (const std::size_t length : {cloud.normal.size(), cloud.colour.size(), cloud.radius.size()})
+    for (const std::size_t length :
+         {cloud.normal.size(), cloud.colour.size(), cloud.radius.size(), cloud.station.size()})
       REQUIRE((length == 0 || length == cloud.size()));
     REQUIRE(report.points_in_file == cloud.size());
     REQUIRE(report.triangles == cloud.triangle.size());
@@ -93,7 +133,7 @@ TEST_CASE("ply fuzz: the seeds themselves are sound") {
     CloudReport report;
     const PointCloud cloud = read_ply(folder.write("seed.ply", seed), {}, report);
     CHECK(cloud.size() == 4);
-    CHECK(cloud.triangle.size() == 4); // a triangle, a quad, and a strip of one (the second strip is too short)
+    CHECK(cloud.triangle.size() == 4); // or a triangle, a quad, and a strip of one (the second strip is too short)
     CHECK(report.warnings.empty());
   }
 }

@@ -48,6 +48,7 @@ public:
   [[noreturn]] void fail(const std::string& what) const;
 
 private:
+  void find_line_end();
   bool at_line_end();
   std::string_view word();
   double number(std::string_view text) const;
@@ -58,6 +59,7 @@ private:
   const char* line_end_;
   const char* rest_;
   const char* end_;
+  const char* line_feed_ = nullptr; ///< the first from `at_` on, or the end; else not known yet
   std::size_t line_;
   std::size_t next_line_;
   const PlyElement* element_ = nullptr;

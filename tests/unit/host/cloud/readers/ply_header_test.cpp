@@ -129,7 +129,8 @@ TEST_CASE("ply header: counts are judged before anything is allocated") {
   const auto with_count = [](const std::string& count) {
     return start + "element vertex " + count + "\n" + xyz + "end_header\n0 0 0\n";
   };
-  for (const std::string count : {"2147483648", "4294967297", "18446744073709551615", "100", "2"})
+  for (const std::string count :
+       {"2147483648", "4294967297", "9223372036854775808", "18446744073709551615", "100", "2"})
     CHECK_THAT(complaint(with_count(count)), Contains("line 3: element \"vertex\" announces " + count + " records"));
   CHECK_THAT(complaint(with_count("18446744073709551616")), Contains("line 3") && Contains("larger than any file"));
   for (const std::string count : {"-1", "1e30", "1.0", "0x10", "many", "+1"})
