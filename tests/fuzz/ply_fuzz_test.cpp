@@ -63,9 +63,9 @@ std::vector<std::string> seeds_of_fixed_length() {
       "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
   std::string ascii = "ply\nformat ascii" + rest + "0 0 1\n1 1 1\n35\n";
   for (int i = 0; i < 4; ++i)
-    ascii += std::to_string(i) + ".5 -1e3 7 0 0.6 0.8 17 1 1e9\n";
+    ascii += std::to_string(i) + ".5 -1 7 0 0.6 0.8 17 1 1e9\n";
   for (int i = 0; i < 4; ++i)
-    ascii += "3 0 1 2 190 80 50\n";
+    ascii += "3 0 1 2 9 8 7\n";
   std::vector<std::string> seeds{ascii};
   for (const bool big : {false, true}) {
     std::string binary = std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") + rest;
@@ -73,7 +73,7 @@ std::vector<std::string> seeds_of_fixed_length() {
       binary += bytes_of(value, big);
     binary += bytes_of(35.0f, big);
     for (int i = 0; i < 4; ++i) {
-      for (const float value : {static_cast<float>(i), -1e3f, 7.0f, 0.0f, 0.6f, 0.8f, 17.0f})
+      for (const float value : {static_cast<float>(i), -1.0f, 7.0f, 0.0f, 0.6f, 0.8f, 17.0f})
         binary += bytes_of(value, big);
       binary += bytes_of<std::uint16_t>(1, big) + bytes_of(1e9, big);
     }

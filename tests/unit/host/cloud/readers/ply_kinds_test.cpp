@@ -195,7 +195,7 @@ TEST_CASE("ply kinds: scanner positions and which way is up", "[fields]") {
                     Contains("cloud.ply: line 4: vertex 2 names a station that there is not; expected 0 to 1"));
 
   CHECK_THROWS_WITH(read(file("1", "1 nan 3.5\n", "0 0 0 0\n1 0 0 0\n0 1 0 0\n")),
-                    Contains("line 13 (station 0 of 1): a scanner position is not finite"));
+                    Contains("line 14 (station 0 of 1): a scanner position is not finite"));
 
   // One station needs no index, and an index without stations says nothing.
   const auto one = read(ascii + "element vertex 2\n" + xyz +
