@@ -1,5 +1,7 @@
 """python -m import_scan SCAN PART OUT: reads SCAN, writes PART, calls it OUT in messages."""
 import os
+import resource
+import signal
 import sys
 
 from import_scan.errors import InputError
@@ -36,22 +38,45 @@ def run(scan, part, out):
     print(f"{out}: {writer.count:,} points{where}; {what}", file=sys.stderr)
 
 
-def main(scan, part, out):
+def convert(scan, part, out):
+    """The exit code."""
     try:
         run(scan, part, out)
     except InputError as error:
-        print(f"error: {scan}: {error}", file=sys.stderr)
-        return 3
-    except KeyboardInterrupt:
-        return 130
+        return failed(scan, error)
     except MemoryError:
-        print(f"error: {scan}: it asks for more memory than there is; the file is damaged, or the machine too small",
-              file=sys.stderr)
-        return 3
+        return failed(scan, "it asks for more memory than there is; the file is damaged, or the machine too small")
     except OSError as error:
         print(f"error: {out}: {error.strerror}; check the disk", file=sys.stderr)
         return 5
     return 0
+
+
+def failed(scan, what):
+    print(f"error: {scan}: {what}", file=sys.stderr)
+    return 3
+
+
+def main(scan, part, out):
+    """Reads in a child: the libraries end their process where a damaged file asks for what cannot be."""
+    memory = max(4 << 30, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    child = os.fork()
+    if child == 0:
+        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        code = 130
+        try:
+            code = convert(scan, part, out)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            sys.stderr.flush()
+            os._exit(code)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the child has it too
+    _, status = os.waitpid(child, 0)
+    if os.WIFSIGNALED(status):
+        return failed(scan, f"the library that reads it crashed (signal {os.WTERMSIG(status)}); the file is damaged")
+    return os.WEXITSTATUS(status)
 
 
 if __name__ == "__main__":

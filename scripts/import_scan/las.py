@@ -1,4 +1,7 @@
 """LAS, LAZ and COPC by laspy: all versions and point formats."""
+import os
+import struct
+
 import laspy
 import numpy as np
 
@@ -7,6 +10,37 @@ from import_scan.errors import InputError, told_as
 KEPT = [("intensity", "u2"), ("return_number", "u1"), ("number_of_returns", "u1"), ("classification", "u1")]
 COLOURS = [("red", "u2"), ("green", "u2"), ("blue", "u2")]
 PIECE_BYTES = 64 << 20
+VLR_BYTES = 54  # of the head of a variable length record
+LASZIP_CHUNK_BYTES = 1 << 30
+
+
+def check_header(path):
+    """Throws InputError for counts that the file cannot have: laspy would believe them, for hours."""
+    with open(path, "rb") as file:
+        header = file.read(375)
+        size = os.fstat(file.fileno()).st_size
+        if len(header) < 227:
+            raise InputError("it ends within its header; it is truncated")
+        header_bytes, points_begin, vlrs, _, record_bytes = struct.unpack_from("<HIIBH", header, 94)
+        if not header_bytes <= points_begin <= size:
+            raise InputError(f"its points begin at byte {points_begin:,}, the file has {size:,}; it is truncated")
+        if vlrs * VLR_BYTES > points_begin - header_bytes:
+            raise InputError(f"it announces {vlrs:,} records before its points, which do not fit; it is damaged")
+        extended, = struct.unpack_from("<I", header.ljust(375, b"\0"), 243) if header[25] >= 4 else (0,)
+        if extended * (VLR_BYTES + 6) > size:
+            raise InputError(f"it announces {extended:,} records behind its points, which do not fit; it is damaged")
+        file.seek(header_bytes)
+        check_laszip(file.read(points_begin - header_bytes), record_bytes)
+
+
+def check_laszip(vlrs, record_bytes):
+    """A chunk is unpacked as a whole."""
+    at = vlrs.find(b"laszip encoded")
+    if at < 2 or len(vlrs) < at - 2 + VLR_BYTES + 16:
+        return
+    chunk, = struct.unpack_from("<I", vlrs, at - 2 + VLR_BYTES + 12)
+    if chunk != 0xFFFFFFFF and chunk * record_bytes > LASZIP_CHUNK_BYTES:
+        raise InputError(f"it has chunks of {chunk:,} points; it is damaged")
 
 
 class LasCloud:
@@ -17,6 +51,7 @@ class LasCloud:
     def __init__(self, path):
         self.path = path
         self.notes = []
+        check_header(path)
         with self.open() as reader:
             header = reader.header
             self.points = header.point_count
