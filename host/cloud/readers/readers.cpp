@@ -1,5 +1,7 @@
 #include "host/cloud/readers/readers.h"
 #include "host/cloud/input_file.h"
+#include "host/cloud/readers/e57_file.h"
+#include "host/cloud/readers/e57_read.h"
 #include "host/cloud/readers/mesh.h"
 #include "host/cloud/readers/ply.h"
 #include "host/error.h"
@@ -27,10 +29,6 @@ bool is_las(const char* data, std::size_t size) {
 }
 bool is_laz(const char* data, std::size_t size) {
   return is_las_family(data, size) && (static_cast<unsigned char>(data[104]) & 0xc0) != 0;
-}
-
-bool is_e57(const char* data, std::size_t size) {
-  return begins_with(data, size, "ASTM-E57");
 }
 
 const char* const import_it = "make a PLY file of it: `scripts/import SCAN OUT.ply`";
@@ -71,7 +69,7 @@ const std::vector<CloudReader>& cloud_readers() {
       {"PLY", {".ply"}, is_ply, read_ply},
       {"LAS", {".las"}, is_las, nullptr, import_it},
       {"LAZ", {".laz"}, is_laz, nullptr, import_it},
-      {"E57", {".e57"}, is_e57, nullptr, import_it},
+      {"E57", {".e57"}, is_e57, read_e57},
       {"PCD", {".pcd"}, nullptr, nullptr},
       {"PTS", {".pts"}, nullptr, nullptr},
       {"PTX", {".ptx"}, nullptr, nullptr},
