@@ -54,6 +54,15 @@ enum class CloudKind {
 };
 const char* name_of(CloudKind kind);
 
+/// Where a cloud is shown whose file has axes of different units: each point is moved from the middle by `scale`.
+struct Placement {
+  Eigen::Vector3d low, high; ///< bounds of the points in the file
+  Eigen::Vector3d scale;     ///< an axis
+
+  Eigen::Vector3d middle() const { return (low + high) / 2.0; }
+  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return middle() + scale.cwiseProduct(p - middle()); }
+};
+
 /// What was found, estimated, dropped or odd on the way from a file to splats. Shown by `pointgi info`; warnings are
 /// logged.
 struct CloudReport {
@@ -68,7 +77,8 @@ struct CloudReport {
   std::string normals_from; ///< "file", "file, flipped", "faces", "estimated (…)"
   std::string radii_from;   ///< "file", "estimated (…)"
   std::string areas_from;
-  std::optional<Eigen::Vector3d> up; ///< unit; what the format defines (LAS, PTX, E57: z), or the cloud's kind shows
+  std::optional<Eigen::Vector3d> up;  ///< unit; what the format defines (LAS, PTX, E57: z), or the cloud's kind shows
+  std::optional<Placement> placement; ///< degrees of longitude and latitude; PointCloud has them as the file does
   CloudKind kind = CloudKind::model;
   std::string kind_reason;               ///< by what it was recognised; empty: not looked at
   std::vector<Eigen::Vector3d> stations; ///< where the points were seen from, the file's coordinates; empty: not known

@@ -85,8 +85,13 @@ PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
                          ? *settings.points
                          : read_cloud(settings.file, {settings.spacing / settings.scale, {}, false}, report);
   if (settings.points) report.format = "arrays in memory";
+  std::optional<Vector3d> viewpoint = settings.viewpoint;
+  if (report.placement) {
+    std::transform(cloud.position.begin(), cloud.position.end(), cloud.position.begin(), *report.placement);
+    if (viewpoint) viewpoint = (*report.placement)(*viewpoint);
+  }
   try {
-    complete_cloud(cloud, {settings.normals, settings.radii, settings.viewpoint}, report);
+    complete_cloud(cloud, {settings.normals, settings.radii, viewpoint}, report);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw; // it is no fault of the cloud
     throw Error(error.kind(), settings.file + ": " + error.what());

@@ -2,6 +2,8 @@
 #include "host/cloud/input_file.h"
 #include "host/cloud/readers/e57_file.h"
 #include "host/cloud/readers/e57_read.h"
+#include "host/cloud/readers/las_header.h"
+#include "host/cloud/readers/las_read.h"
 #include "host/cloud/readers/mesh.h"
 #include "host/cloud/readers/ply.h"
 #include "host/error.h"
@@ -18,17 +20,6 @@ bool begins_with(const char* data, std::size_t size, std::string_view magic) {
 
 bool is_ply(const char* data, std::size_t size) {
   return begins_with(data, size, "ply\n") || begins_with(data, size, "ply\r");
-}
-
-/// LAS and LAZ have one header; compressors set the highest bits of the point format.
-bool is_las_family(const char* data, std::size_t size) {
-  return begins_with(data, size, "LASF") && size > 104;
-}
-bool is_las(const char* data, std::size_t size) {
-  return is_las_family(data, size) && (static_cast<unsigned char>(data[104]) & 0xc0) == 0;
-}
-bool is_laz(const char* data, std::size_t size) {
-  return is_las_family(data, size) && (static_cast<unsigned char>(data[104]) & 0xc0) != 0;
 }
 
 const char* const import_it = "make a PLY file of it: `scripts/import SCAN OUT.ply`";
@@ -67,7 +58,7 @@ const CloudReader* reader_of(const std::string& path) {
 const std::vector<CloudReader>& cloud_readers() {
   static const std::vector<CloudReader> readers{
       {"PLY", {".ply"}, is_ply, read_ply},
-      {"LAS", {".las"}, is_las, nullptr, import_it},
+      {"LAS", {".las"}, is_las, read_las},
       {"LAZ", {".laz"}, is_laz, nullptr, import_it},
       {"E57", {".e57"}, is_e57, read_e57},
       {"PCD", {".pcd"}, nullptr, nullptr},
