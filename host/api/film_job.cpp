@@ -35,8 +35,10 @@ void look(const FilmOptions& options, pointgi::Scene& view) {
   const TableReader root(sections, name, "");
   load_render(root, view.render);
   if (!options.camera) return;
+  const std::optional<Backfaces> backfaces = view.camera.backfaces;
   view.camera = {};
   load_camera(root, view.up, view.camera);
+  view.camera.backfaces = backfaces;
 }
 
 PixelWindow window_of(const FilmOptions& options, const RenderSettings& render) {
@@ -54,7 +56,8 @@ PixelWindow window_of(const FilmOptions& options, const RenderSettings& render) 
 std::string settings_text(const pointgi::Scene& scene, const std::string& integrator, const std::string& paths) {
   const RadiositySettings& r = scene.radiosity;
   const CausticSettings& c = scene.caustics;
-  return fmt::format("{} {}; {} {} {} {} {:a} {:a} {} {} {}; {} {} {} {:a} {} {}", integrator, paths, r.method, r.order,
+  return fmt::format("{} {} {}; {} {} {} {} {:a} {:a} {} {} {}; {} {} {} {:a} {} {}", integrator, paths,
+                     name_of(scene.camera.backfaces.value_or(Backfaces::shade)), r.method, r.order,
                      r.vmap_samples, r.point_samples, r.epsilon, r.tolerance, r.vmap, r.direct_light,
                      r.light_samples.value_or(0), c.photons, c.gather_k, c.power, c.max_radius.value_or(0.0),
                      c.feedback, c.indirect);
@@ -92,6 +95,7 @@ FilmJob::FilmJob(Light::Parts& light, const FilmOptions& options)
   request_.emplace(
       RenderRequest{window_of(options, view_.render), lighting_, ready.frame, ready.ids, ready.choice.variant, paths});
   request_->first_ids = ready.first_ids;
+  request_->backfaces = view_.camera.backfaces.value_or(Backfaces::shade);
   if (light.irradiance.size > 0) {
     request_->irradiance = &light.irradiance;
     request_->shadow_rays = !direct_light_by_radiosity(view_);

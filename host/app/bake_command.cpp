@@ -19,6 +19,8 @@ api::Scene checked_scene(const BakeOptions& options) {
   api::Scene checked = api::Scene::from_file(options.input, overrides_of(options));
   checked.set_bake_quality(options.quality);
   const Scene scene = checked.parts()->description();
+  if (options.exposure == "auto")
+    throw Error(ErrorKind::usage, "--exposure: of a lit cloud, expected a number of stops, found \"auto\"");
   require_possible_radiosity(scene);
   require_outputs(options.input, scene, {{"-o", options.output}, {"--stats", options.stats_file}});
   return checked;

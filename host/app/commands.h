@@ -12,7 +12,9 @@ namespace pointgi {
 struct LightOptions {
   std::string input;  ///< scene.toml or cloud
   std::string output; ///< of render: .exr; empty: the input's name in the working directory; of bake: .ply
-  std::optional<double> exposure;
+  std::string exposure; ///< stops, or "auto"; empty: as the scene has it
+  std::string up;       ///< "y", "-z", ...; empty: as the scene has it, or found
+  std::string ground;   ///< "auto" or "none"; empty: as the scene has it
   std::string device;
   std::optional<unsigned> seed;
   std::string quality = "normal";     ///< draft: four times epsilon, a quarter of the samples; high: half, four

@@ -89,6 +89,8 @@ CLI::Option* add_light_options(CLI::App& command, LightOptions& options, Common&
   command.add_option("SCENE.toml|CLOUD.ply", options.input, input)->required();
   CLI::Option* to = command.add_option("-o,--output", options.output, output);
   command.add_option("--exposure", options.exposure, exposure);
+  command.add_option("--up", options.up, "the axis that points up: y, z, x, -y, -z or -x; default: found, or the scene's")
+      ->check(CLI::IsMember(std::vector<std::string>{"y", "z", "x", "-y", "-z", "-x"}));
   add_device_options(command, options.device, common);
   command.add_option("--seed", options.seed, "seed of the samples (default 1)");
   command.add_option("--quality", options.quality, quality)->check(CLI::IsMember({"draft", "normal", "high"}));
@@ -114,6 +116,9 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
                      "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
                      "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, S a specular one, + one or "
                      "more, * any number");
+  command.add_option("--ground", render.ground,
+                     "auto puts a ground plane under what stands free, none does not (default: auto of a bare cloud)")
+      ->check(CLI::IsMember({"auto", "none"}));
   command.add_option("--trace", render.trace_file, "write stages and kernels as a Chrome trace to this JSON file");
   command.add_option("--pixelbounds", render.pixel_bounds,
                      "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
@@ -133,7 +138,8 @@ int run(int argc, char** argv) {
   CLI::App* render_command = app.add_subcommand("render", "render a scene, or a bare cloud");
   add_light_options(*render_command, render, common, "what to render",
                     "the picture, OUT.exr, and OUT.png beside it; default: the input's name, here; replaces older ones",
-                    "brightens the PNG by this many stops (default 0)",
+                    "brightens the PNG by this many stops, or auto: chosen from the picture (default: 0 of a scene, "
+                    "auto of a bare cloud)",
                     "draft: a quarter of the scene's samples a pixel and four times its radiosity.epsilon; normal; "
                     "high: four times the samples, half of epsilon");
   add_render_options(*render_command, render);

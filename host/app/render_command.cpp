@@ -4,6 +4,7 @@
 #include "host/app/light_command.h"
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
+#include "host/stages/view_warnings.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -139,11 +140,17 @@ ExitCode run_render(const RenderOptions& options) {
   const api::Light light(prepared, {true, options.integrator == "path"}, run.control());
   api::FilmJob job(*light.parts(), film);
   PictureWriter writer(output_of(options), description.render.width, description.render.height, job.window(),
-                       job.channels(), job.attributes(), description.render.exposure);
+                       job.channels(), job.attributes(),
+                       description.render.auto_exposure ? std::nullopt
+                                                        : std::optional<double>(description.render.exposure));
   RenderTotals totals;
   if (!render_picture(device, job, writer, run.control(), totals))
     throw Error(ErrorKind::interrupted, "interrupted before the first rows were finished; nothing was written");
+  const PngLight& shown = writer.png_light();
+  if (description.render.auto_exposure)
+    spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", shown.exposure, shown.exposure);
   job.warn(totals);
+  if (!totals.interrupted) warn_of_exposure(shown, prepared.parts()->scene, prepared.parts()->ready);
   write_reports(options, *light.parts(), totals);
   run.end_progress();
   std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());

@@ -7,6 +7,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
@@ -64,6 +65,30 @@ private:
   const AtomicFile& file_;
   std::uint64_t position_ = 0;
   int error_number_ = 0;
+};
+
+/// What a writer has written, before the file has its name.
+class FdInput : public Imf::IStream {
+public:
+  explicit FdInput(const AtomicFile& file) : Imf::IStream(file.final_path().c_str()), file_(file) {}
+
+  bool read(char bytes[], int count) override {
+    for (int done = 0; done < count;) {
+      const ssize_t got = ::pread(file_.fd(), bytes + done, static_cast<std::size_t>(count - done),
+                                  static_cast<off_t>(position_));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) throw output_error(file_.final_path(), "read back the file", got == 0 ? EIO : errno);
+      done += static_cast<int>(got);
+      position_ += static_cast<std::uint64_t>(got);
+    }
+    return true;
+  }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override { position_ = position; }
+
+private:
+  const AtomicFile& file_;
+  std::uint64_t position_ = 0;
 };
 
 /// Runs a call into OpenEXR; what it throws becomes our error.
@@ -143,6 +168,7 @@ struct ExrWriter::State {
   std::vector<ChannelName> channels;
   PixelWindow window;
   std::uint64_t render_time_at = 0;
+  std::optional<std::uint64_t> exposure_at;
 };
 
 ExrWriter::ExrWriter(const std::string& path, int full_width, int full_height, PixelWindow window,
@@ -161,6 +187,7 @@ ExrWriter::ExrWriter(const std::string& path, int full_width, int full_height, P
   const auto place = find_float_attribute(header, render_time_attribute);
   if (!place) throw Error(ErrorKind::internal, path + ": the header just written lacks " + render_time_attribute);
   state.render_time_at = *place;
+  state.exposure_at = find_float_attribute(header, exposure_attribute);
 }
 
 ExrWriter::~ExrWriter() = default;
@@ -188,18 +215,52 @@ void ExrWriter::write_zeros(int rows) {
   });
 }
 
-void ExrWriter::close(double render_seconds) {
-  State& state = *state_;
-  state.image.reset(); // writes the line table and swallows errors: the stream remembers them
-  state.stream.check();
-  const float seconds = static_cast<float>(render_seconds);
+namespace {
+
+void put_float(const AtomicFile& file, std::uint64_t at, double number) {
+  const float value = static_cast<float>(number);
   std::uint32_t bits = 0;
-  std::memcpy(&bits, &seconds, sizeof bits);
+  std::memcpy(&bits, &value, sizeof bits);
   char bytes[4];
   for (int i = 0; i < 4; ++i)
     bytes[i] = static_cast<char>((bits >> (8 * i)) & 0xffu);
-  const int failed = write_at(state.file.fd(), bytes, sizeof bytes, state.render_time_at);
-  if (failed != 0) throw output_error(state.file.final_path(), "write the file", failed);
+  const int failed = write_at(file.fd(), bytes, sizeof bytes, at);
+  if (failed != 0) throw output_error(file.final_path(), "write the file", failed);
+}
+
+} // namespace
+
+void ExrWriter::close(double render_seconds, double exposure) {
+  State& state = *state_;
+  state.image.reset(); // writes the line table and swallows errors: the stream remembers them
+  state.stream.check();
+  put_float(state.file, state.render_time_at, render_seconds);
+  if (state.exposure_at) put_float(state.file, *state.exposure_at, exposure);
+}
+
+void ExrWriter::read_rows(const std::vector<std::string>& channels,
+                          const std::function<void(const float* row)>& take) const {
+  const State& state = *state_;
+  constexpr int rows_at_once = 16; // a block of the compression
+  const PixelWindow& window = state.window;
+  const auto width = static_cast<std::size_t>(window.x1 - window.x0);
+  std::vector<float> rows(rows_at_once * width * channels.size());
+  guarded(state.file.final_path(), [&] {
+    FdInput stream(state.file);
+    Imf::InputFile image(stream);
+    for (int y = window.y0; y < window.y1; y += rows_at_once) {
+      const int last = std::min(y + rows_at_once, window.y1) - 1;
+      Imf::FrameBuffer pixels;
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        pixels.insert(channels[c], Imf::Slice::Make(Imf::FLOAT, rows.data() + c * width, {window.x0, y}, width,
+                                                    last - y + 1, sizeof(float),
+                                                    sizeof(float) * width * channels.size()));
+      image.setFrameBuffer(pixels);
+      image.readPixels(y, last);
+      for (int row = 0; row <= last - y; ++row)
+        take(rows.data() + static_cast<std::size_t>(row) * width * channels.size());
+    }
+  });
 }
 
 void ExrWriter::commit() {

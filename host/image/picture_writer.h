@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,18 @@ struct PixelWindow {
   int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
 };
 
+/// What the PNG of a picture shows.
+struct PngLight {
+  double exposure = 0.0;      ///< stops
+  double clipped_share = 0.0; ///< of the pixels: some colour is 1 or more
+  double mean = 0.0;          ///< of the values of sRGB, from 0 to 1
+  double lit_share = 0.0;     ///< of the pixels: not black in the EXR
+};
+
 /// Writes OUT.exr (scan lines, ZIP, one part; displayWindow the full image, dataWindow the pixel window) and OUT.png
 /// beside it (8 bit sRGB of R G B · 2^exposure, clamped, NaN as 0; the pixel window only, no alpha), row by row in
-/// bounded memory (16 rows of the EXR, one of the PNG) and atomically: temporary names in the same folder, fsync and
+/// bounded memory (16 rows of the EXR, one of the PNG; where the exposure is chosen from the whole picture, the PNG is
+/// written from the finished EXR) and atomically: temporary names in the same folder, fsync and
 /// rename in finish(). A writer destroyed unfinished removes its temporary files and leaves any older picture whole.
 /// Throws Error(output) naming the file and the remedy (folder missing, not writable, disk full, a name that does not
 /// end in .exr), Error(usage) for a window outside the image, and Error(internal) for bands or channels that do not
@@ -32,9 +42,11 @@ struct PixelWindow {
 class PictureWriter {
 public:
   /// Both files are created here, so that a wrong path costs no rendering. R, G and B must be among the channels.
+  /// No `exposure_stops`: chosen (host/image/exposure.h), and kept as the attribute exposure_attribute.
   /// Compression takes as many threads as Imf::setGlobalThreadCount() allows; the bytes do not depend on it.
   PictureWriter(const std::string& exr_path, int full_width, int full_height, PixelWindow window,
-                const std::vector<ChannelName>& channels, const PictureAttributes& attributes, double exposure_stops);
+                const std::vector<ChannelName>& channels, const PictureAttributes& attributes,
+                std::optional<double> exposure_stops);
   ~PictureWriter();
   PictureWriter(const PictureWriter&) = delete;
   PictureWriter& operator=(const PictureWriter&) = delete;
@@ -44,6 +56,9 @@ public:
 
   /// Fills rows not yet written with zero, sets renderTimeSeconds, closes and renames both files. Once only.
   void finish(double render_seconds);
+
+  /// After finish().
+  const PngLight& png_light() const;
 
   const std::string& exr_path() const;
   const std::string& png_path() const;

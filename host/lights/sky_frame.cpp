@@ -1,4 +1,5 @@
 #include "host/lights/sky_frame.h"
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace pointgi {
@@ -12,11 +13,11 @@ double radians(double degrees) {
 } // namespace
 
 SkyFrame sky_frame(UpAxis up, double turn_deg) {
-  const Vector3d right = Vector3d::UnitX();
-  const Vector3d forward = up == UpAxis::z ? Vector3d(Vector3d::UnitY()) : Vector3d(-Vector3d::UnitZ());
+  const Vector3d upwards = direction_of(up);
+  const Vector3d right = std::fabs(upwards.x()) > 0.5 ? Vector3d::UnitY() : Vector3d::UnitX();
+  const Vector3d forward = upwards.cross(right);
   const double c = std::cos(radians(turn_deg)), s = std::sin(radians(turn_deg));
-  return {c * right - s * forward, c * forward + s * right,
-          up == UpAxis::z ? Vector3d(Vector3d::UnitZ()) : Vector3d(Vector3d::UnitY())};
+  return {c * right - s * forward, c * forward + s * right, upwards};
 }
 
 Vector3d sky_direction(const SkyFrame& frame, double azimuth_deg, double elevation_deg) {

@@ -20,6 +20,10 @@ std::string group_options(WorkGroup group) {
   return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
 }
 
+std::string backface_options(Backfaces backfaces) {
+  return backfaces == Backfaces::see_through ? " -D FRONTS_ONLY" : "";
+}
+
 std::string light_options(unsigned lights) {
   if (lights == 0) return {};
   std::string options = " -D HAS_LIGHT_SOURCES";
@@ -95,13 +99,15 @@ std::string build_options(const TraversalVariant& variant) {
   return options;
 }
 
-Program trace_program(const TraversalVariant& variant) {
-  return program(variant, "traverse/trace.cl", variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : "");
+Program trace_program(const TraversalVariant& variant, Backfaces backfaces) {
+  return program(variant, "traverse/trace.cl",
+                 (variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : "") + backface_options(backfaces));
 }
 
-Program eye_rays_program(const TraversalVariant& variant) {
+Program eye_rays_program(const TraversalVariant& variant, Backfaces backfaces) {
   return program(variant, "render/eye_rays.cl",
-                 variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : group_options(variant.group));
+                 (variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : group_options(variant.group)) +
+                     backface_options(backfaces));
 }
 
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features) {

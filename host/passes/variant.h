@@ -61,11 +61,11 @@ struct Program {
 };
 
 /// Given rays: trace_closest_rays, trace_any_rays, trace_blended_rays; with grouping packet also
-/// trace_packets.
-Program trace_program(const TraversalVariant& variant);
+/// trace_packets. Where backs are seen through, nearest hits are those of front sides.
+Program trace_program(const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade);
 /// Hits of the picture's eye rays, trace_eye_rays: a pixel a half or whole work-group, or (packets) a square of pixels
 /// a work-item.
-Program eye_rays_program(const TraversalVariant& variant);
+Program eye_rays_program(const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade);
 /// The picture from these hits, shade_pixels: a pixel a half or whole work-group.
 Program shade_program(const TraversalVariant& variant, const SceneFeatures& features);
 /// Direct irradiance of the points, direct_irradiance_of_points.

@@ -53,6 +53,7 @@ struct RenderRequest {
 
   const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none
   View<std::uint32_t> first_ids{}; ///< rising: the first id of each object, of which the totals then tell; empty: none
+  Backfaces backfaces = Backfaces::shade;
 
   bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
   bool has_specular() const { return normal_field != nullptr; }

@@ -23,7 +23,7 @@ std::vector<cl::Memory> pool_arguments(const DevicePools& pools, const Buffer<cl
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
                            const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
-                           const DevicePhotonMap* photons)
+                           const DevicePhotonMap* photons, Backfaces backfaces)
     : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr)),
       points_(pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons)), params_(lighting.params),
       grouping_(variant.grouping), eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
@@ -47,7 +47,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
     params_.most_bounces = paths->most_bounces;
   }
   features = features_on(session.info(), features);
-  const Program eye_rays = eye_rays_program(variant),
+  const Program eye_rays = eye_rays_program(variant, backfaces),
                 shade = paths ? path_program(variant, features, !paths->all) : shade_program(variant, features);
   eye_rays_ = session.kernel(eye_rays.file, eye_rays.options, "trace_eye_rays");
   shade_ = session.kernel(shade.file, shade.options, paths ? "path_pixels" : "shade_pixels");

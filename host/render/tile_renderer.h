@@ -25,7 +25,8 @@ public:
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
                const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
-               const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr);
+               const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr,
+               Backfaces backfaces = Backfaces::shade);
 
   pg_uint samples() const { return params_.samples; }
 

@@ -94,8 +94,7 @@ HalfPlane half_plane(const Scene& scene) {
 } // namespace
 
 Vector3d up_of(const Scene& scene) {
-  if (scene.camera.up) return *scene.camera.up;
-  return scene.up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();
+  return scene.camera.up.value_or(direction_of(scene.up));
 }
 
 Camera device_camera(const Scene& scene, const Frame& frame) {

@@ -48,21 +48,37 @@ bool shines(const Scene& scene) {
          std::any_of(scene.shapes.begin(), scene.shapes.end(), emits);
 }
 
+/// Of which its own warning has told.
+bool has_dark_sun(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const LightSettings& light) {
+    return light.type == LightType::sun && light.strength.isZero();
+  });
+}
+
+void load_up(const TableReader& root, Scene& scene) {
+  std::vector<std::string> words;
+  for (const UpAxis up : up_axes())
+    words.push_back(name_of(up));
+  const auto word = root.choice("up", words);
+  if (!word) return;
+  scene.up = up_axes()[static_cast<std::size_t>(std::find(words.begin(), words.end(), *word) - words.begin())];
+  scene.up_chosen = true;
+}
+
 } // namespace
 
 Scene scene_of(const SceneDocument& document) {
   const std::string& path = document.name;
   const TableReader root(document.table, path, "");
   check_version(root);
-  root.allow_only({"version", "up", "render", "camera", "material", "cloud", "shape", "light", "environment",
+  root.allow_only({"version", "up", "ground", "render", "camera", "material", "cloud", "shape", "light", "environment",
                    "radiosity", "caustics", "octree", "traversal"});
 
   Scene scene;
   scene.file = path;
-  if (const auto up = root.choice("up", {"y", "z"})) {
-    scene.up = *up == "y" ? UpAxis::y : UpAxis::z;
-    scene.up_chosen = true;
-  }
+  scene.render.auto_exposure = scene.ground = document.bare; // unless the overrides say otherwise
+  load_up(root, scene);
+  if (const auto ground = root.choice("ground", {"auto", "none"})) scene.ground = *ground == "auto";
   load_render(root, scene.render);
   load_camera(root, scene.up, scene.camera);
   scene.materials = load_materials(root, scene.warnings);
@@ -80,7 +96,7 @@ Scene scene_of(const SceneDocument& document) {
     throw Error(ErrorKind::input,
                 path +
                     ": the scene is empty, expected at least one [[cloud]] or [[shape]]; there is nothing to render");
-  if (!shines(scene))
+  if (!shines(scene) && !has_dark_sun(scene))
     scene.warnings.push_back(path + ": nothing gives light, the picture will be black; add a [[light]], an "
                                     "[environment] or a material with emission.");
   if (document.bare) {

@@ -28,6 +28,18 @@ void load_size(const TableReader& table, RenderSettings& render) {
   render.height = static_cast<int>(height);
 }
 
+/// A number or a word.
+void load_exposure(const TableReader& table, RenderSettings& render) {
+  const toml::node* node = table.find("exposure");
+  if (node == nullptr) return;
+  render.auto_exposure = node->is_string() && node->as_string()->get() == "auto";
+  if (render.auto_exposure) return;
+  if (!node->is_number())
+    table.fail("exposure", std::string("expected \"auto\" or a number ") + limits::exposure.words + ", found " +
+                               found_text(*node));
+  render.exposure = *table.number("exposure", limits::exposure);
+}
+
 } // namespace
 
 void load_render(const TableReader& root, RenderSettings& render) {
@@ -37,7 +49,7 @@ void load_render(const TableReader& root, RenderSettings& render) {
   load_size(*table, render);
   if (const auto spp = table->integer("spp", limits::spp)) render.spp = static_cast<int>(*spp);
   if (const auto seed = table->integer("seed", limits::seed)) render.seed = static_cast<unsigned>(*seed);
-  if (const auto exposure = table->number("exposure", limits::exposure)) render.exposure = *exposure;
+  load_exposure(*table, render);
   if (const auto depth = table->integer("max_depth", limits::max_depth)) render.max_depth = static_cast<int>(*depth);
   if (const auto jitter = table->boolean("jitter")) render.jitter = *jitter;
 }
@@ -45,12 +57,19 @@ void load_render(const TableReader& root, RenderSettings& render) {
 void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
   const std::optional<TableReader> table = root.table("camera");
   if (!table) return;
-  table->allow_only({"position", "look_at", "fov_deg", "up"});
+  table->allow_only({"position", "look_at", "fov_deg", "up", "backfaces"});
   camera.place = table->place();
+  if (const auto fov = table->number("fov_deg", limits::fov)) camera.fov_deg = *fov;
+  if (const auto word = table->choice("backfaces", {name_of(Backfaces::shade), name_of(Backfaces::see_through)}))
+    camera.backfaces = *word == name_of(Backfaces::shade) ? Backfaces::shade : Backfaces::see_through;
+  if (!table->has("position") && !table->has("look_at")) {
+    if (table->has("up"))
+      table->fail("up", "goes with a position and look_at, and there are none; give them, or the scene's own up");
+    return; // a view is found
+  }
   camera.chosen = true;
   camera.position = table->need_vector3("position", limits::coordinate);
   camera.look_at = table->need_vector3("look_at", limits::coordinate);
-  if (const auto fov = table->number("fov_deg", limits::fov)) camera.fov_deg = *fov;
 
   const Vector3d view = camera.look_at - camera.position;
   if (view.norm() <= limits::same_point * std::max(camera.look_at.norm(), camera.position.norm()))
@@ -64,11 +83,10 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
                   "the camera looks along its up direction, so that no side of the picture is up; choose another");
     return;
   }
-  const Vector3d upright = up == UpAxis::y ? Vector3d::UnitY() : Vector3d::UnitZ();
-  if (view.normalized().cross(upright).norm() < limits::parallel_sine)
-    table->fail("look_at", std::string("the camera looks along up = \"") + (up == UpAxis::y ? "y" : "z") +
+  if (view.normalized().cross(direction_of(up)).norm() < limits::parallel_sine)
+    table->fail("look_at", std::string("the camera looks along up = \"") + name_of(up) +
                                "\", so that no side of the picture is up; move it a little aside or set up = \"" +
-                               (up == UpAxis::y ? "z" : "y") + "\"");
+                               (up == UpAxis::y || up == UpAxis::minus_y ? "z" : "y") + "\"");
 }
 
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {

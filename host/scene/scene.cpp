@@ -7,6 +7,27 @@ std::string SourcePlace::text() const {
   return file + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
+const char* name_of(UpAxis up) {
+  constexpr const char* names[] = {"y", "z", "x", "-y", "-z", "-x"};
+  return names[static_cast<std::size_t>(up)];
+}
+
+const std::vector<UpAxis>& up_axes() {
+  static const std::vector<UpAxis> all{UpAxis::y,       UpAxis::z,       UpAxis::x,
+                                       UpAxis::minus_y, UpAxis::minus_z, UpAxis::minus_x};
+  return all;
+}
+
+Vector3d direction_of(UpAxis up) {
+  constexpr int axes[] = {1, 2, 0};
+  const auto number = static_cast<int>(up);
+  return (number < 3 ? 1.0 : -1.0) * Vector3d::Unit(axes[number % 3]);
+}
+
+const char* name_of(Backfaces backfaces) {
+  return backfaces == Backfaces::shade ? "shade" : "see_through";
+}
+
 const char* name_of(PointOrder order) {
   return order == PointOrder::morton ? "morton" : "hilbert";
 }

@@ -22,7 +22,18 @@ struct SourcePlace {
   std::string text() const; ///< "file:line:column", or "--set" / "(default)" where there is no line
 };
 
-enum class UpAxis { y, z };
+/// What eye rays make of the backs of surfaces; all other rays meet both sides.
+enum class Backfaces {
+  shade,       ///< they are black
+  see_through, ///< they are not there
+};
+const char* name_of(Backfaces backfaces);
+
+/// An axis, or the opposite of one.
+enum class UpAxis { y, z, x, minus_y, minus_z, minus_x };
+const char* name_of(UpAxis up); ///< "y", "-z"
+const std::vector<UpAxis>& up_axes();
+Vector3d direction_of(UpAxis up); ///< unit
 enum class ColourSpace { srgb, linear };
 
 struct RenderSettings {
@@ -31,6 +42,7 @@ struct RenderSettings {
   int spp = 32; ///< samples a pixel
   unsigned seed = 1;
   double exposure = 0.0;        ///< stops, for the PNG only
+  bool auto_exposure = false;   ///< instead chosen from the picture (host/image/exposure.h)
   std::optional<int> max_depth; ///< most surface points of a path from light to eye; absent: no limit
   bool jitter = true;
 };
@@ -41,6 +53,7 @@ struct CameraSettings {
   double fov_deg = 40.0;      ///< vertical
   std::optional<Vector3d> up; ///< instead of the scene's axis
   bool chosen = false;        ///< the file has a [camera]; without one the program finds a view
+  std::optional<Backfaces> backfaces; ///< absent: shade, or what a chosen view asks for
   SourcePlace place;
 };
 
@@ -213,6 +226,7 @@ struct Scene {
   std::string file;
   UpAxis up = UpAxis::y;
   bool up_chosen = false; ///< the file says which way is up; else a chosen camera finds out
+  bool ground = false;    ///< a ground plane goes under what stands free (host/view/ground.h)
   RenderSettings render;
   CameraSettings camera;
   std::vector<MaterialSettings> materials;

@@ -41,12 +41,14 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
   cloud.colour.assign(cloud.size(), albedo.cast<float>().cwiseMin(most));
 }
 
-void place(PointCloud& cloud, const CloudSettings& settings) {
+Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
   const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
-  const Eigen::Matrix3d rotation =
-      (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
-       Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
-          .toRotationMatrix();
+  return (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+void place(PointCloud& cloud, const CloudSettings& settings, const Eigen::Matrix3d& rotation) {
   const bool turned = !settings.rotate_deg.isZero();
   const Eigen::Matrix3f rotation_f = rotation.cast<float>();
   const auto scale = static_cast<float>(settings.scale);
@@ -60,6 +62,13 @@ void place(PointCloud& cloud, const CloudSettings& settings) {
     cloud.radius[i] = settings.radius ? static_cast<float>(*settings.radius) : cloud.radius[i] * scale;
     cloud.area[i] *= scale * scale;
   }
+}
+
+/// What the report says of places and directions, too.
+void place(CloudReport& report, const CloudSettings& settings, const Eigen::Matrix3d& rotation) {
+  for (Vector3d& station : report.stations)
+    station = rotation * (settings.scale * station) + settings.translate;
+  if (report.up) report.up = rotation * *report.up;
 }
 
 void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
@@ -79,6 +88,11 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 }
 
 } // namespace
+
+void append_cloud(WorldSplats& splats, PointCloud&& cloud, const MaterialSettings& material, std::uint32_t number) {
+  set_albedo(cloud, material);
+  append(splats, std::move(cloud), number);
+}
 
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
   PointCloud cloud = settings.points
@@ -107,7 +121,9 @@ WorldSplats load_splats(const Scene& scene) {
     PointCloud cloud = load_cloud(settings, report);
     const std::uint32_t material = index_of(scene, settings.material);
     set_albedo(cloud, scene.materials[material]);
-    place(cloud, settings);
+    const Eigen::Matrix3d rotation = rotation_of(settings);
+    place(cloud, settings, rotation);
+    place(report, settings, rotation);
     append(all, std::move(cloud), material);
   }
   for (const ShapeSettings& settings : scene.shapes) {

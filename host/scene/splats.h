@@ -21,6 +21,9 @@ PointCloud load_cloud(const CloudSettings& settings, CloudReport& report);
 /// Loads, samples and places everything. Throws Error(input), or Error(memory).
 WorldSplats load_splats(const Scene& scene);
 
+/// One more object: a complete cloud in world units, of the scene's material of that `number`.
+void append_cloud(WorldSplats& splats, PointCloud&& cloud, const MaterialSettings& material, std::uint32_t number);
+
 /// The device's points in the frame's cube.
 std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame);
 

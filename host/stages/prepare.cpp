@@ -3,7 +3,7 @@
 #include "host/run.h"
 #include "host/scene/merge_coincident.h"
 #include "host/scene/sheet_sides.h"
-#include "host/view/default_view.h"
+#include "host/view/default_light.h"
 #include <numeric>
 
 namespace pointgi {
@@ -33,15 +33,22 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
 }
 
 /// What the user left open is chosen so that the picture is worth looking at.
-void choose_view(Scene& scene, const WorldSplats& splats, bool bare) {
-  if (!scene.camera.chosen) log_info("{}", choose_camera(scene, splats));
-  if (bare && scene.lights.empty() && scene.sky == nullptr && scene.environment.isZero()) choose_lights(scene);
+void choose_view(Scene& scene, WorldSplats& splats, bool bare) {
+  const bool unlit = bare && scene.lights.empty() && scene.sky == nullptr && scene.environment.isZero();
+  if (scene.camera.chosen && !unlit && !scene.ground) return;
+  const ChosenView view = scene.camera.chosen ? given_view(scene, splats) : choose_camera(scene, splats);
+  if (!view.sentence.empty()) log_info("{}", view.sentence);
+  if (unlit)
+    for (const std::string& sentence : choose_lights(scene, splats, view))
+      log_info("{}", sentence);
+  else if (scene.ground && !bare)
+    add_ground(scene, splats, view, Vector3d::Constant(0.5));
 }
 
 } // namespace
 
 PlacedSplats load_and_place(Scene& scene, bool bare) {
-  const WorldSplats world = load_splats(scene);
+  WorldSplats world = load_splats(scene);
   choose_view(scene, world, bare);
   log_reports(scene, world);
   PlacedSplats placed;

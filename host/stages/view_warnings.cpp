@@ -36,6 +36,20 @@ std::string suspects(const Scene& scene) {
   return list;
 }
 
+/// A lamp of which little is left at the distance of the scene's half: "; the point light at ... gives ...".
+std::string weak_lamp(const Scene& scene, const PreparedScene& ready) {
+  const double reach = 0.5 * ready.frame.side;
+  for (const LightSettings& light : scene.lights) {
+    if (light.is_far) continue;
+    const double irradiance = light.strength.maxCoeff() / (reach * reach);
+    if (irradiance > 0.0 && irradiance < 0.1)
+      return fmt::format("; {} gives {:.2g} W/m2 across half of the scene, which is {:.4g} long, and about 3 would look "
+                         "bright: its power should be {:.2g} times as large",
+                         description_of(light), irradiance, ready.frame.side, 3.0 / irradiance);
+  }
+  return {};
+}
+
 bool is_dark(View<float> values) {
   return std::all_of(values.begin(), values.end(), [](float v) { return !(v > 0.0f); });
 }
@@ -74,6 +88,18 @@ bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> d
   if (!is_dark(direct) || !is_dark(from_surfaces)) return false;
   log_warning("no light reaches any surface: {}", suspects(scene));
   return true;
+}
+
+void warn_of_exposure(const PngLight& shown, const Scene& scene, const PreparedScene& ready) {
+  constexpr double burnt = 0.9, dark = 0.02;
+  if (shown.clipped_share > burnt)
+    log_warning("{:.0f} % of the PNG's pixels are burnt to white at an exposure of {:.4g}: --exposure auto chooses a "
+                "lower one (daylight wants about -8), or less light",
+                100.0 * shown.clipped_share, shown.exposure);
+  else if (shown.mean < dark && shown.lit_share > 0.05)
+    log_warning("the PNG is nearly black at an exposure of {:.4g}, though {:.0f} % of its pixels receive light: --exposure "
+                "auto chooses a higher one{}",
+                shown.exposure, 100.0 * shown.lit_share, weak_lamp(scene, ready));
 }
 
 void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool already_warned) {

@@ -15,6 +15,10 @@ bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedSc
 /// empty), each [points x 3].
 bool warn_of_unlit(const Scene& scene, const PreparedScene& ready, View<float> direct, View<float> from_surfaces);
 
+/// Warns of a PNG that is burnt nearly everywhere, or nearly black though the picture is not; names the exposure, and
+/// lamps that are too weak for the size of the scene.
+void warn_of_exposure(const PngLight& shown, const Scene& scene, const PreparedScene& ready);
+
 /// Warns of a picture that shows no splat, many backs, or that is black; of the last not where `already_warned`.
 void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool already_warned);
 

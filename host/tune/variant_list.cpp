@@ -165,7 +165,8 @@ std::vector<ProgramUse> all_programs() {
       v.stepping = Stepping::absolute_delta;
       variants.push_back(v);
     }
-  std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true}};
+  std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true},
+                               {{"test/brute_force.cl", "-D FRONTS_ONLY"}, true, true}};
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl"})
     uses.push_back({fmm_program(file), true, true});
@@ -187,8 +188,10 @@ std::vector<ProgramUse> all_programs() {
     const bool cpu = why_not(v, ideal_device(true)).empty(), gpu = why_not(v, ideal_device(false)).empty();
     const bool usual_walk = build_options(v) == build_options(plain_variant(v.form)) && !v.fast_math;
     const bool usual_group = v.group == WorkGroup{};
-    add(trace_program(v), cpu, gpu);
-    add(eye_rays_program(v), cpu, gpu);
+    for (const Backfaces backfaces : {Backfaces::shade, Backfaces::see_through}) {
+      add(trace_program(v, backfaces), cpu, gpu);
+      add(eye_rays_program(v, backfaces), cpu, gpu);
+    }
     if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
     if (usual_group) add(shade_program(v, {}), cpu, gpu);
     add(direct_irradiance_program(v, {all_lights, true, true}), cpu, gpu);

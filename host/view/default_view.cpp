@@ -1,202 +1,192 @@
 #include "host/view/default_view.h"
 #include "host/scene/lighting.h"
+#include "host/view/frame_filler.h"
+#include "host/view/up.h"
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <fmt/format.h>
 
 namespace pointgi {
 
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
-/// Room left at the border of the frame.
-constexpr double frame_margin = 1.06;
 
-struct Survey {
-  Vector3d low, high;   ///< bounds without the outermost half percent of the points on each axis
-  Vector3d mean_normal; ///< sum of A n over the sum of A: zero for a closed surface
-};
-
-Survey survey(const PointCloud& cloud) {
-  Survey result;
-  std::vector<double> values(cloud.size());
-  for (int a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      values[i] = cloud.position[i][a];
-    const auto at = [&](std::size_t k) {
-      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-      return values[k];
-    };
-    const std::size_t cut = cloud.size() / 200;
-    result.low[a] = at(cut);
-    result.high[a] = at(cloud.size() - 1 - cut);
+/// Share of the points beyond each end of what a picture of such a cloud shows. Scans thin out with the distance.
+double cut_of(CloudKind kind) {
+  switch (kind) {
+  case CloudKind::station:
+    return 0.03;
+  case CloudKind::map:
+    return 0.02;
+  case CloudKind::sparse:
+    return 0.04;
+  default:
+    return 0.005;
   }
-  Vector3d sum(0, 0, 0);
-  double area = 0.0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    sum += static_cast<double>(cloud.area[i]) * cloud.normal[i].cast<double>();
-    area += cloud.area[i];
-  }
-  result.mean_normal = sum / area;
-  return result;
 }
 
-/// Terrain: much flatter than wide, facing along its thin axis. Returns that direction, or zero.
-Vector3d terrain_up(const Survey& s) {
-  const Vector3d extent = s.high - s.low;
-  int thin = 0;
-  extent.minCoeff(&thin);
+bool is_across(const Vector3d& extent, int thin, double share) {
   const double middle = extent.sum() - extent.minCoeff() - extent.maxCoeff();
-  if (extent[thin] > 0.35 * middle || std::fabs(s.mean_normal[thin]) < 0.5) return Vector3d::Zero();
-  return Vector3d::Unit(thin) * (s.mean_normal[thin] > 0.0 ? 1.0 : -1.0);
+  return extent[thin] <= share * middle;
 }
 
-/// What the splats would stand on with `up` (plus or minus an axis) upwards: the bounding rectangle of their lowest
-/// fiftieth, as a share of the whole's; 0 where the middle of the points is not above it.
-double footprint(const PointCloud& cloud, const Survey& s, int axis, double sign) {
-  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  const Vector3d extent = s.high - s.low;
-  const double floor = sign > 0.0 ? s.low[axis] : -s.high[axis];
-  double low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
-  Vector3d middle(0, 0, 0);
-  for (const Vector3d& p : cloud.position) {
-    middle += p;
-    if (sign * p[axis] > floor + 0.02 * extent[axis]) continue;
-    low_a = std::min(low_a, p[a]), high_a = std::max(high_a, p[a]);
-    low_b = std::min(low_b, p[b]), high_b = std::max(high_b, p[b]);
+/// Much flatter than wide, facing along the thin axis.
+bool is_terrain(const ViewPoints& points) {
+  int thin = 0;
+  points.extent().minCoeff(&thin);
+  return is_across(points.extent(), thin, 0.35) && std::fabs(points.mean_normal[thin]) >= 0.5;
+}
+
+/// Closed, and facing in.
+bool is_inside_out(const ViewPoints& points) {
+  return points.mean_normal.norm() < 0.15 && points.outwardness < -0.1;
+}
+
+/// The kind that all clouds have in common, as their files or neighbourhoods tell; else by what the points look like.
+CloudKind kind_of(const WorldSplats& splats, const ViewPoints& points) {
+  const auto& reports = splats.reports;
+  const auto is_other = [&](const CloudReport& r) { return r.kind_reason.empty() || r.kind != reports.front().kind; };
+  CloudKind kind = CloudKind::model;
+  if (!reports.empty() && std::none_of(reports.begin(), reports.end(), is_other)) kind = reports.front().kind;
+  if (kind != CloudKind::model) return kind;
+  if (!reports.empty() && reports.front().normals_from.find("sensor at the origin") != std::string::npos)
+    return CloudKind::depth_frame;
+  if (is_terrain(points)) return CloudKind::terrain;
+  return is_inside_out(points) ? CloudKind::room : kind;
+}
+
+Vector3d first_station(const WorldSplats& splats) {
+  for (const CloudReport& report : splats.reports)
+    if (!report.stations.empty()) return report.stations.front();
+  return Vector3d::Zero();
+}
+
+UpChoice up_for(const Scene& scene, const WorldSplats& splats, const ViewPoints& points, CloudKind kind) {
+  if (scene.up_chosen) return {up_of(scene), "as asked for"};
+  for (const CloudReport& report : splats.reports)
+    if (report.up) return {report.up->normalized(), "as the file has it"};
+  return find_up(points, kind, first_station(splats));
+}
+
+/// Area that faces down in the upper half, against what faces up in the lower.
+bool has_ceiling(const ViewPoints& points, const Vector3d& up) {
+  double floor = 0.0, ceiling = 0.0;
+  const double middle = up.dot(points.centre());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double facing = up.dot(points.normal[i].cast<double>());
+    if (std::fabs(facing) < 0.8) continue;
+    (up.dot(points.position[i]) > middle ? ceiling : floor) += std::copysign(points.area[i], facing);
   }
-  middle /= static_cast<double>(cloud.size());
-  if (middle[a] < low_a || middle[a] > high_a || middle[b] < low_b || middle[b] > high_b) return 0.0;
-  return (high_a - low_a) * (high_b - low_b) / (extent[a] * extent[b]);
+  return floor > 0.0 && ceiling < -0.3 * floor;
 }
 
-/// The axis that points up: whichever of y and z the points stand on most broadly; y, as models have it, when they
-/// stand on neither.
-Vector3d standing_up(const PointCloud& cloud, const Survey& s) {
-  constexpr double least = 0.2; // a foot this small is a tip that the middle happens to be above
-  Vector3d best = Vector3d::UnitY();
-  double widest = least;
-  for (const int axis : {1, 2})
-    for (const double sign : {1.0, -1.0})
-      if (const double foot = footprint(cloud, s, axis, sign); foot > widest) {
-        widest = foot;
-        best = sign * Vector3d::Unit(axis);
-      }
-  return best;
+/// The direction with no part along up; any where there is none else.
+Vector3d level(const Vector3d& direction, const Vector3d& up) {
+  const Vector3d flat = direction - direction.dot(up) * up;
+  return flat.norm() > 1e-9 * direction.norm() ? Vector3d(flat.normalized()) : Vector3d(up.unitOrthogonal());
 }
 
-/// Where the front is, a little from the right: across the longer side; towards +z with y up and -y with z up, as
-/// models have it.
-Vector3d front_of(const Survey& s, const Vector3d& up) {
-  const bool y_up = std::fabs(up.y()) > 0.5;
-  const Vector3d extent = s.high - s.low, depth_axis = y_up ? Vector3d(0, 0, 1) : Vector3d(0, -1, 0);
-  const double depth = y_up ? extent.z() : extent.y();
-  const Vector3d front = depth > 1.25 * extent.x() ? Vector3d(1, 0, 0) : depth_axis;
-  return front + 0.5 * up.cross(front);
+/// -y where z is up, +z where y is: as maps and models have the viewer.
+Vector3d viewers_side(const Vector3d& up) {
+  return level(std::fabs(up.z()) > 0.7 ? Vector3d(0, -1, 0) : Vector3d(0, 0, 1), up);
 }
 
-/// Moves the camera back along its view until the points inside the bounds fill the frame.
-void fit(Scene& scene, const PointCloud& cloud, const Survey& s, const Vector3d& from, const Vector3d& up) {
-  const Vector3d back = from.normalized(), right = up.cross(back).normalized(), upward = back.cross(right);
-  const Vector3d centre = 0.5 * (s.low + s.high), slack = 0.02 * (s.high - s.low);
-  const double half_y = std::tan(0.5 * scene.camera.fov_deg * degree) / frame_margin;
-  const double half_x = half_y * scene.render.width / scene.render.height;
-  double distance = 1e-9 * (1.0 + (s.high - s.low).norm());
-  double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
-  for (int pass = 0; pass < 2; ++pass) {
-    // First pass: the middle of what is seen; second: how far away it fits.
-    const Vector3d target =
-        pass == 0 ? centre : Vector3d(centre + 0.5 * (low_x + high_x) * right + 0.5 * (low_y + high_y) * upward);
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const Vector3d& p = cloud.position[i];
-      if ((p.array() < (s.low - slack).array()).any() || (p.array() > (s.high + slack).array()).any()) continue;
-      const Vector3d d = p - target;
-      const double x = d.dot(right), y = d.dot(upward), z = d.dot(back), r = cloud.radius[i];
-      if (pass == 0) {
-        low_x = std::min(low_x, x), high_x = std::max(high_x, x);
-        low_y = std::min(low_y, y), high_y = std::max(high_y, y);
-      } else {
-        distance = std::max({distance, z + (std::fabs(x) + r) / half_x, z + (std::fabs(y) + r) / half_y, z + 2.0 * r});
-      }
+/// Where the front is: across the longer side.
+Vector3d front_of(const ViewPoints& points, const Vector3d& up) {
+  const Vector3d depth = viewers_side(up), across = up.cross(depth), extent = points.extent();
+  return depth.cwiseAbs().dot(extent) > 1.25 * across.cwiseAbs().dot(extent) ? across : depth;
+}
+
+Vector3d from_above(const Vector3d& side, const Vector3d& up, double degrees) {
+  return std::cos(degrees * degree) * side.normalized() + std::sin(degrees * degree) * up;
+}
+
+/// Behind the station, as it looks at most of what it sees; where it stands in the middle, along the longer side.
+Vector3d behind_station(const ViewPoints& points, const Vector3d& station, const Vector3d& up) {
+  const Vector3d ahead = points.centre() - station, flat = ahead - ahead.dot(up) * up;
+  const double size = level(Vector3d(points.extent()), up).cwiseAbs().dot(points.extent());
+  if (flat.norm() > 0.15 * size) return -flat.normalized();
+  return front_of(points, up);
+}
+
+std::string name_of_up(const UpChoice& choice) {
+  int axis = 0;
+  const double most = choice.up.cwiseAbs().maxCoeff(&axis);
+  const std::string name = most > 0.999 ? std::string(choice.up[axis] < 0.0 ? "-" : "") + "xyz"[axis]
+                                        : fmt::format("[{:.3g}, {:.3g}, {:.3g}]", choice.up.x(), choice.up.y(), choice.up.z());
+  return name + " is up (" + choice.reason + ")";
+}
+
+/// Sets the camera; returns what it shows.
+std::string look(Scene& scene, const WorldSplats& splats, const ViewPoints& points, ChosenView& view) {
+  const Vector3d& up = view.up;
+  const auto fit = [&](const Vector3d& from) { fill_frame(scene, points, from, up); };
+  switch (view.kind) {
+  case CloudKind::depth_frame:
+    look_from(scene, points, first_station(splats), up);
+    return "seen from its sensor";
+  case CloudKind::terrain:
+  case CloudKind::map:
+    fit(from_above(viewers_side(up), up, 35.0));
+    return "seen from the south, 35 degrees down";
+  case CloudKind::station:
+    if (!view.is_closed_room) {
+      fit(from_above(behind_station(points, first_station(splats), up), up, 30.0));
+      return "seen from behind and above the station";
     }
-    scene.camera.look_at = target;
+    [[fallthrough]];
+  case CloudKind::room: {
+    const Vector3d front = front_of(points, up);
+    fit(from_above(front + 0.5 * up.cross(front), up, 40.0));
+    return "seen from outside, near walls seen through";
   }
-  scene.camera.position = scene.camera.look_at + distance * back;
-  scene.camera.up = upward;
+  case CloudKind::model:
+  case CloudKind::sparse:
+  case CloudKind::foliage:
+    break;
+  }
+  // An open scan faces the way it was scanned from.
+  const Vector3d open = points.mean_normal - points.mean_normal.dot(up) * up;
+  view.is_open = open.norm() > 0.15;
+  const Vector3d front = front_of(points, up);
+  fit(from_above(view.is_open ? open : Vector3d(front + 0.5 * up.cross(front)), up, 17.0));
+  return view.is_open ? "seen from the side that most points face" : "seen from the front";
 }
 
-/// A depth image is looked at from its sensor, at the origin of its coordinates; y runs downwards, as depth cameras
-/// count.
-void look_from_sensor(Scene& scene, const PointCloud& cloud, const Survey& s) {
-  Vector3d forward = (0.5 * (s.low + s.high)).normalized();
-  const Vector3d down = std::fabs(forward.y()) < 0.9 ? Vector3d(0, 1, 0) : Vector3d(0, 0, -1);
-  Vector3d right, upward;
-  double tangent_x = 0.0, tangent_y = 0.0;
-  for (int pass = 0; pass < 3; ++pass) { // turns towards the middle of what is seen, then measures it
-    right = down.cross(forward).normalized();
-    upward = right.cross(forward);
-    double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
-    for (const Vector3d& p : cloud.position) {
-      const double z = p.dot(forward);
-      if (z <= 0.0 || (p.array() < s.low.array()).any() || (p.array() > s.high.array()).any()) continue;
-      const double x = p.dot(right) / z, y = p.dot(upward) / z;
-      low_x = std::min(low_x, x), high_x = std::max(high_x, x);
-      low_y = std::min(low_y, y), high_y = std::max(high_y, y);
-    }
-    tangent_x = std::max(high_x, -low_x), tangent_y = std::max(high_y, -low_y);
-    if (pass < 2) forward = (forward + 0.5 * (low_x + high_x) * right + 0.5 * (low_y + high_y) * upward).normalized();
-  }
-  const double tangent = std::max({0.05, tangent_y, tangent_x * scene.render.height / scene.render.width});
-  scene.camera.position = Vector3d::Zero();
-  scene.camera.look_at = forward * (0.5 * (s.low + s.high)).norm();
-  scene.camera.up = upward;
-  scene.camera.fov_deg = std::min(120.0, 2.0 * std::atan(frame_margin * tangent) / degree);
+ChosenView recognise(const WorldSplats& splats, const ViewPoints& points) {
+  ChosenView view;
+  view.kind = kind_of(splats, points);
+  return view;
 }
 
 } // namespace
 
-void choose_lights(Scene& scene) {
-  const Vector3d back = (scene.camera.position - scene.camera.look_at).normalized(), up = up_of(scene);
-  const Vector3d right = up.cross(back).normalized();
-  const Vector3d towards = (-0.55 * right + 0.7 * up + 0.75 * back).normalized();
-  LightSettings key;
-  key.type = LightType::directional;
-  key.is_far = true;
-  key.vector = towards;
-  key.strength = Vector3d(2.0, 1.95, 1.85);
-  scene.lights = {key};
-  scene.environment = Vector3d(0.20, 0.215, 0.245);
+ChosenView choose_camera(Scene& scene, const WorldSplats& splats) {
+  ViewPoints points = view_points(splats.cloud, cut_of(CloudKind::model));
+  ChosenView view = recognise(splats, points);
+  if (cut_of(view.kind) != cut_of(CloudKind::model)) points = view_points(splats.cloud, cut_of(view.kind));
+  const UpChoice up = up_for(scene, splats, points, view.kind);
+  view.up = up.up;
+  const bool is_scan = view.kind == CloudKind::room || view.kind == CloudKind::station;
+  view.is_closed_room = is_scan && has_ceiling(points, view.up);
+  const std::string shown = look(scene, splats, points, view);
+  if (!scene.camera.backfaces && is_scan) scene.camera.backfaces = Backfaces::see_through;
+  const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
+  view.sentence = fmt::format(
+      "camera chosen: {}, {}, {} (position = [{:.6g}, {:.6g}, {:.6g}], look_at = [{:.6g}, {:.6g}, {:.6g}], fov_deg = "
+      "{:.4g}){}",
+      name_of(view.kind), name_of_up(up), shown, p.x(), p.y(), p.z(), t.x(), t.y(), t.z(), scene.camera.fov_deg,
+      scene.camera.backfaces == Backfaces::see_through ? "; backs of surfaces are seen through" : "");
+  return view;
 }
 
-std::string choose_camera(Scene& scene, const WorldSplats& splats) {
-  const Survey s = survey(splats.cloud);
-  const std::string normals = splats.reports.empty() ? "" : splats.reports.front().normals_from;
-  std::string said;
-  if (normals.find("sensor at the origin") != std::string::npos) {
-    look_from_sensor(scene, splats.cloud, s);
-    said = "seen from the sensor at the origin";
-  } else if (const Vector3d up = terrain_up(s); !up.isZero() && (!scene.up_chosen || up.dot(up_of(scene)) > 0.5)) {
-    const Vector3d level = std::fabs(up.z()) > 0.5 ? Vector3d(0, -1, 0) : Vector3d(0, 0, 1);
-    fit(scene, splats.cloud, s, std::sin(50.0 * degree) * up + std::cos(50.0 * degree) * level, up);
-    said = "terrain, seen from above";
-  } else {
-    const Vector3d up_axis = scene.up_chosen ? up_of(scene) : standing_up(splats.cloud, s);
-    // An open scan faces the way it was scanned from.
-    const Vector3d open = s.mean_normal - s.mean_normal.dot(up_axis) * up_axis;
-    const bool is_open = open.norm() > 0.15;
-    fit(scene, splats.cloud, s, (is_open ? open : front_of(s, up_axis)).normalized() + 0.25 * up_axis, up_axis);
-    int axis = 0;
-    up_axis.cwiseAbs().maxCoeff(&axis);
-    said = std::string(up_axis.sum() < 0.0 ? "-" : "") + "xyz"[axis] + " taken as up, seen from " +
-           (is_open ? "the side that most points face" : "the front");
-  }
-  const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "camera chosen: %s (position = [%.6g, %.6g, %.6g], look_at = [%.6g, %.6g, %.6g], fov_deg = %.4g)",
-                said.c_str(), p.x(), p.y(), p.z(), t.x(), t.y(), t.z(), scene.camera.fov_deg);
-  return text;
+ChosenView given_view(const Scene& scene, const WorldSplats& splats) {
+  const ViewPoints points = view_points(splats.cloud, cut_of(CloudKind::model));
+  ChosenView view = recognise(splats, points);
+  view.up = up_of(scene);
+  view.is_closed_room = (view.kind == CloudKind::room || view.kind == CloudKind::station) && has_ceiling(points, view.up);
+  return view;
 }
 
 } // namespace pointgi

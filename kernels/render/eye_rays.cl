@@ -3,7 +3,8 @@
  *   GROUP_X, GROUP_Y  shape of a work-group, 32 or 64 work-items: one or two pixels, a ray a work-item, by their linear
  *                     number; NDRange (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows)
  *   RAY_PACKETS       instead a work-item traces the rays of 2 x 2 pixels as one packet (kernels/traverse/wide_packet.cl);
- *                     NDRange (columns, rows) in such squares, padded */
+ *                     NDRange (columns, rows) in such squares, padded
+ *   FRONTS_ONLY       they pass through the backs of surfaces (kernels/surface/disc.cl) */
 #include "render/camera.cl"
 #include "render/group.cl"
 #include "traverse/traversal.cl"

@@ -1,5 +1,16 @@
-/* One ray against one disc; kernels/surface/disc_lanes.cl is the same in vectors. */
+/* One ray against one disc; kernels/surface/disc_lanes.cl is the same in vectors.
+ *   FRONTS_ONLY  defined where nearest hits are those of front sides: rays pass through backs */
 #include "lib/vector.cl"
+
+/* Whether nearest hits are looked for on the side of a disc that faces a ray; `cosine`, of its normal with the ray, in
+ * one lane or several. */
+#ifdef FRONTS_ONLY
+#define SIDE_COUNTS(cosine) ((cosine) < 0.0f)
+#define AND_SIDE_COUNTS(cosine) &SIDE_COUNTS(cosine)
+#else
+#define SIDE_COUNTS(cosine) true
+#define AND_SIDE_COUNTS(cosine)
+#endif
 
 /* t at which o + t d meets the plane of the disc (centre c.xyz, normal n), n.(c-o) / n.d (method.md section 6), and the
  * distance there from the centre, squared: inf or NaN for a ray parallel to it. */

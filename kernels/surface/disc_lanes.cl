@@ -3,6 +3,7 @@
 #include "lib/lanes.cl"
 #include "lib/vector.cl"
 #include "shared/octree_types.h"
+#include "surface/disc.cl"
 
 /* What meet says of each disc of a block. */
 typedef struct BlockHits {
@@ -32,6 +33,11 @@ static inline BlockHits meet_lanes(const __global float* block, float3 origin, f
   h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
   h.sheets = as_uint(block[WIDE_SHEETS(WIDE_LANES)]);
   return h;
+}
+
+/* Cosines of the discs' normals with a ray: dot3, bit-identical. */
+static inline lanes_f cosines_of_lanes(const BlockHits* h, float3 direction) {
+  return fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
 }
 
 /* meet of sixteen rays with the unit directions (dx, dy, dz), bit-identical. centre: from the rays' origin. */

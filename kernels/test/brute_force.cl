@@ -1,5 +1,6 @@
 /* The truth beside every traversal: each ray against each splat of the pool, without the octree. For tests.
  * NDRange: 1-D, one work-item a ray, padded. answers[i] = nearest hit of rays[i], ties to the lowest index; for
+ * FRONTS_ONLY as for the octree (kernels/surface/disc.cl);
  * brute_force_closest_from of those that do not belong to the surface which it leaves, surfaces[i] = (normal, radius). */
 #include "lib/pools.cl"
 #include "lib/ray.cl"
@@ -15,7 +16,8 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
     const float4 normal = points[POINT_TEXELS * k + 1u];
     float q;
     const float t = meet(origin, direction, centre, normal.xyz, &q);
-    if (t > ray->t_min && t < best.t && !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
+    if (t > ray->t_min && t < best.t && SIDE_COUNTS(dot3(normal.xyz, direction)) &&
+        !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
       best.t = t;
       best.splat = k;
     }

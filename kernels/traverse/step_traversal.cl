@@ -102,9 +102,10 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       float q;
-      const float t = meet(ray.origin, ray.direction, pool_point_texel(POINT_TEXELS * i),
-                           pool_point_texel(POINT_TEXELS * i + 1u).xyz, &q);
-      if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat))) {
+      const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
+      const float t = meet(ray.origin, ray.direction, pool_point_texel(POINT_TEXELS * i), normal, &q);
+      if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
+          SIDE_COUNTS(dot3(normal, ray.direction))) {
         best.t = t;
         best.splat = i;
       }

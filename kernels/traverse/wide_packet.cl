@@ -163,7 +163,9 @@ static inline void hit_group(const RayPacket* p, int group, float3 centre, float
   int16 inside;
   const float16 t = meet_rays(p->x[group], p->y[group], p->z[group], centre, radius, normal, &inside);
   const int16 nearer = inside & (t > p->t_min) &
-                       ((t < t_best) | ((t == t_best) & (as_int16((uint16)(index) < splat_best))));
+                       ((t < t_best) | ((t == t_best) & (as_int16((uint16)(index) < splat_best))))
+                       AND_SIDE_COUNTS(fma((float16)(normal.x), p->x[group],
+                                           fma((float16)(normal.y), p->y[group], normal.z * p->z[group])));
   best->t[group] = select(t_best, t, nearer);
   best->splat[group] = select(splat_best, (uint16)(index), nearer);
 }

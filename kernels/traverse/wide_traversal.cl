@@ -121,7 +121,8 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
       const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_u index = h.first + LANE_NUMBERS;
       const lanes_i nearer = h.inside & (h.t > ray.t_min) &
-                             ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
+                             ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))))
+                             AND_SIDE_COUNTS(cosines_of_lanes(&h, ray.direction));
       if (any_lane(nearer)) {
         const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
         best.t = smallest_lane(t);

@@ -24,14 +24,15 @@ struct Other {
 /// Nearest hits through the octree, one ray a work-item whatever the variant's grouping; `splat` is the index into
 /// `splats`.
 std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
-                                  const TraversalVariant& variant, Other* other = nullptr) {
+                                  const TraversalVariant& variant, Other* other = nullptr,
+                                  Backfaces backfaces = Backfaces::shade) {
   const OctreePools pools = build_pools(splats, variant);
   std::visit([](const auto& p) { verify(p); }, pools);
   Session& device = session();
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
-  const Program program = trace_program(variant);
+  const Program program = trace_program(variant, backfaces);
   const LaunchShape shape = LaunchShape::line(rays.size(), variant.group.size());
   cl::Kernel kernel = device.kernel(program.file, program.options, "trace_closest_rays");
   device.launch(kernel, shape, on_device.nodes, on_device.leaves, on_device.points, queries, answers,
@@ -54,12 +55,14 @@ std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::v
 }
 
 /// The same by a linear scan over all splats, on the device.
-std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays) {
+std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
+                                 Backfaces backfaces = Backfaces::shade) {
   Session& device = session();
   const auto points = device.upload(splats);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
-  cl::Kernel kernel = device.kernel("test/brute_force.cl", "", "brute_force_closest");
+  cl::Kernel kernel = device.kernel(
+      "test/brute_force.cl", backfaces == Backfaces::see_through ? "-D FRONTS_ONLY" : "", "brute_force_closest");
   device.launch(kernel, LaunchShape::line(rays.size()), points, static_cast<cl_uint>(splats.size()), queries, answers,
                 static_cast<cl_uint>(rays.size()));
   return device.download(answers, rays.size());
@@ -231,10 +234,11 @@ TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan s
   }
 }
 
-TEST_CASE("packets of rays find what the rays find one by one") {
-  const auto splats = mixed_splats();
-  // Narrow bundles and wide ones, along axes, across the octants, from inside discs; three bundles with wide gaps
-  // between, one of them behind the others' middle; and half a sphere's width.
+namespace {
+
+/// Narrow bundles and wide ones, along axes, across the octants, from inside discs; three bundles with wide gaps
+/// between, one of them behind the others' middle; and half a sphere's width.
+std::vector<RayQuery> bundles(const std::vector<Splat>& splats) {
   std::vector<RayQuery> rays;
   const auto middles = hard_rays(splats, 1500, 41);
   std::mt19937 g(43);
@@ -251,22 +255,63 @@ TEST_CASE("packets of rays find what the rays find one by one") {
       rays.push_back(make_ray(middles[i].origin, d));
     }
   }
+  return rays;
+}
+
+/// Answers of packets of PACKET_RAYS rays each.
+std::vector<RayAnswer> trace_in_packets(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
+                                        const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade) {
+  const OctreePools pools = build_pools(splats, variant);
+  Session& device = session();
+  const DevicePools on_device = upload_pools(device, pools, variant.storage);
+  const auto queries = device.upload(packets_of(rays));
+  const auto answers = device.allocate<RayPacketAnswer>(queries.size);
+  const Program program = trace_program(variant, backfaces);
+  cl::Kernel kernel = device.kernel(program.file, program.options, "trace_packets");
+  device.launch(kernel, LaunchShape::line(queries.size, variant.group.size()), on_device.nodes, on_device.leaves,
+                on_device.points, queries, answers, static_cast<cl_uint>(queries.size));
+  auto found = rays_of(device.download(answers, queries.size));
+  for (RayAnswer& answer : found)
+    answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : source_of(pools)[answer.splat];
+  return found;
+}
+
+} // namespace
+
+TEST_CASE("packets of rays find what the rays find one by one") {
+  const auto splats = mixed_splats();
+  const auto rays = bundles(splats);
   const auto truth = trace_all(splats, rays);
   for (const TraversalVariant& variant : valid_variants()) {
     if (variant.grouping != RayGrouping::packet) continue;
     CAPTURE(name_of(variant));
-    const OctreePools pools = build_pools(splats, variant);
-    Session& device = session();
-    const DevicePools on_device = upload_pools(device, pools, variant.storage);
-    const auto queries = device.upload(packets_of(rays));
-    const auto answers = device.allocate<RayPacketAnswer>(queries.size);
-    const Program program = trace_program(variant);
-    cl::Kernel kernel = device.kernel(program.file, program.options, "trace_packets");
-    device.launch(kernel, LaunchShape::line(queries.size, variant.group.size()), on_device.nodes, on_device.leaves,
-                  on_device.points, queries, answers, static_cast<cl_uint>(queries.size));
-    auto found = rays_of(device.download(answers, queries.size));
-    for (RayAnswer& answer : found)
-      answer.splat = answer.splat == NO_SPLAT ? NO_SPLAT : source_of(pools)[answer.splat];
-    CHECK(differences(found, truth) == 0);
+    CHECK(differences(trace_in_packets(splats, rays, variant), truth) == 0);
+  }
+}
+
+TEST_CASE("where backs are seen through, every form and grouping finds the nearest front of a linear scan") {
+  const auto splats = GENERATE(mixed_splats(), sheet_splats(mixed_splats()));
+  const auto rays = hard_rays(splats, 50'011, 61);
+  const auto in_bundles = bundles(splats);
+  const auto truth = trace_all(splats, rays, Backfaces::see_through);
+  const auto truth_of_bundles = trace_all(splats, in_bundles, Backfaces::see_through);
+  CHECK(differences(trace_all(splats, rays), truth) > rays.size() / 10); // it does make a difference
+  std::size_t backs = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (truth[i].splat == NO_SPLAT) continue;
+    const Splat& s = splats[truth[i].splat];
+    double cosine = 0.0;
+    for (int a = 0; a < 3; ++a)
+      cosine += double{s.normal[a]} * double{rays[i].direction[a]};
+    backs += cosine > 1e-6; // rounding of the device's floats
+  }
+  CHECK(backs == 0);
+  std::set<std::string> seen;
+  for (const TraversalVariant& variant : valid_variants()) {
+    if (!seen.insert(trace_program(variant).options + name_of(variant.order)).second) continue;
+    CAPTURE(name_of(variant));
+    CHECK(differences(trace_tree(splats, rays, variant, nullptr, Backfaces::see_through), truth) == 0);
+    if (variant.grouping == RayGrouping::packet)
+      CHECK(differences(trace_in_packets(splats, in_bundles, variant, Backfaces::see_through), truth_of_bundles) == 0);
   }
 }

@@ -451,3 +451,46 @@ TEST_CASE("light paths go with the path tracer only") {
   for (const char* channel : {"Variance.R", "Diffuse.B", "Direct.G"})
     CHECK(picture.channels.count(channel) == 1);
 }
+
+TEST_CASE("a PNG that is burnt or nearly black names the exposure, and the lamp that is too weak") {
+  const TemporaryFolder folder;
+  const auto render = [&](const std::string& scene, const std::string& more) {
+    return run_program("render " + folder.write("scene.toml", scene) + " -o " + folder.file("x.exr") + more);
+  };
+  const std::string lit = std::string(small_scene()) + "[environment]\nradiance = [1.0, 1.0, 1.0]\n";
+  CHECK_THAT(render(lit, "").err, !Contains("warning"));
+  const Run burnt = render(lit, " --exposure 9");
+  CHECK_THAT(burnt.err, Contains("burnt to white at an exposure of 9") && Contains("--exposure auto"));
+  CHECK_THAT(render(lit, " --exposure auto").err, Contains("exposure chosen: ") && !Contains("warning"));
+  // 120 W in a scene of 5000 units.
+  const std::string vast = "version = 1\n[render]\nsize = [40, 30]\nspp = 4\n"
+                           "[camera]\nposition = [0.0, 3000.0, 5000.0]\nlook_at = [0.0, 0.0, 0.0]\nfov_deg = 40.0\n"
+                           "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
+                           "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 0.0, 0.0]\nnormal = [0.0, 1.0, 0.0]\n"
+                           "radius = 2500.0\nspacing = 100.0\nmaterial = \"grey\"\n"
+                           "[[light]]\ntype = \"point\"\nposition = [0.0, 1500.0, 0.0]\npower_w = [120.0, 120.0, 120.0]\n";
+  const Run dark = render(vast, "");
+  CHECK(dark.code == 0);
+  CHECK_THAT(dark.err, Contains("nearly black") && Contains("--exposure auto") &&
+                           Contains("the point light at [0, 1500, 0]") && Contains("which is 5") &&
+                           Contains("times as large"));
+  CHECK_THAT(render(vast, " --exposure auto").err, !Contains("nearly black"));
+}
+
+TEST_CASE("options of the view are refused by their own names, and win") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", direct_scene()), to = " -o " + folder.file("x.exr");
+  for (const char* wrong : {"bright", "1e9", "nan", ""}) {
+    const Run run = run_program("render " + scene + to + " --exposure '" + wrong + "'");
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Contains("--exposure") && !Contains("--set"));
+  }
+  CHECK(run_program("render " + scene + to + " --up w").code == 2);
+  CHECK(run_program("render " + scene + to + " --ground sea").code == 2);
+  CHECK(run_program("render " + scene + to + " --up -z --exposure -1.5 --ground none").code == 0);
+  const Run grounded = run_program("render " + scene + to + " --ground auto --stats " + folder.file("s.json"));
+  CHECK(grounded.code == 0);
+  const auto points = json_of(folder.file("s.json"))["scene"]["points"].get<std::size_t>();
+  CHECK(run_program("render " + scene + to + " --stats " + folder.file("s.json")).code == 0);
+  CHECK(points > 1000 + json_of(folder.file("s.json"))["scene"]["points"].get<std::size_t>());
+}

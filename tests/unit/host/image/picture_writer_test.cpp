@@ -124,6 +124,40 @@ TEST_CASE("a pixel window lies where it belongs in the larger image", "[picture]
   CHECK(same_bits(picture.channels.at("R"), red));
 }
 
+TEST_CASE("a PNG whose exposure is chosen is that of the same number of stops", "[picture]") {
+  const Folder folder;
+  const int width = 21, height = 35, bands = GENERATE(1, 16, 35);
+  const std::vector<ChannelName> channels{{"R", false}, {"G", false}, {"B", false}, {"A", false}};
+  Band whole{0, height, width, std::vector<std::vector<float>>(4)};
+  for (int i = 0; i < width * height; ++i) {
+    for (std::size_t c = 0; c < 3; ++c)
+      whole.values[c].push_back(1e-3f * static_cast<float>(1 + i + 100 * static_cast<int>(c)));
+    whole.values[3].push_back(1.0f);
+  }
+  const PixelWindow window{3, 3 + width, 4, 4 + height};
+  const auto write = [&](const std::string& name, std::optional<double> stops) {
+    PictureWriter writer(folder.file(name), 40, 50, window, channels, {}, stops);
+    for (int row = 0; row < height; row += bands) {
+      Band band{window.y0 + row, std::min(bands, height - row), width, {}};
+      for (const auto& values : whole.values)
+        band.values.emplace_back(values.begin() + row * width, values.begin() + (row + band.rows) * width);
+      writer.write(band);
+    }
+    writer.finish(1.0);
+    return writer.png_light();
+  };
+  const PngLight chosen = write("chosen.exr", std::nullopt);
+  CHECK(chosen.exposure != 0.0);
+  CHECK((chosen.mean > 0.25 && chosen.mean < 0.7));
+  write("given.exr", chosen.exposure);
+  CHECK(bytes_of(folder.file("chosen.png")) == bytes_of(folder.file("given.png")));
+  const Picture picture = read_exr(folder.file("chosen.exr"));
+  CHECK(picture.attributes.number.at("pointgi/exposure") == Approx(chosen.exposure));
+  CHECK(picture.attributes.number.at("renderTimeSeconds") == 1.0);
+  CHECK(read_exr(folder.file("given.exr")).attributes.number.count("pointgi/exposure") == 0);
+  CHECK(picture.channels.at("R") == whole.values[0]); // linear light stays as it is
+}
+
 TEST_CASE("an interrupted picture is filled with zeros", "[picture]") {
   const Folder folder;
   const int written = GENERATE(0, 5, 16);

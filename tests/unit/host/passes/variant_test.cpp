@@ -76,7 +76,8 @@ TEST_CASE("options depend on what a kernel reads, fast math on the kernels that 
   CHECK_THAT(trace_program(v).options, Contains("-cl-mad-enable"));
   CHECK_THAT(build_options(v), !Contains("-cl-mad-enable"));
   v = plain_variant(TraversalForm::wide);
-  CHECK_THAT(eye_rays_program(v).options, !Contains("RAY_PACKETS"));
+  CHECK_THAT(eye_rays_program(v).options, !Contains("RAY_PACKETS") && !Contains("FRONTS_ONLY"));
+  CHECK_THAT(eye_rays_program(v, Backfaces::see_through).options, Contains("FRONTS_ONLY"));
   v.grouping = RayGrouping::packet;
   CHECK_THAT(eye_rays_program(v).options, Contains("RAY_PACKETS") && !Contains("GROUP"));
   CHECK_THAT(trace_program(v).options, Contains("RAY_PACKETS"));
