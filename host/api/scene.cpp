@@ -77,9 +77,10 @@ PointCloud cloud_of(const Points& points) {
 
 pointgi::Scene Scene::Parts::description() const {
   pointgi::Scene scene = scene_of(document);
-  if (quality_of_points)
+  if (quality_of_points) {
     apply_bake_quality(quality, scene);
-  else
+    scene.ground = scene.ground && !document.bare; // a lit cloud is the cloud
+  } else
     apply_quality(quality, scene, !quality_of_samples);
   return scene;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr double bins_a_stop = 20.0, lowest = -149.0, highest = 128.0;
 constexpr auto bin_count = static_cast<std::size_t>((highest - lowest) * bins_a_stop);
 
-constexpr double grey_of_black = 0.1, grey_of_white = 0.4;
+constexpr double grey_of_black = 0.1, grey_of_white = 0.5;
 constexpr double unburnt_share = 0.98; // of the surfaces: specks of light may be white
 constexpr double least_mean = 0.3, largest_mean = 0.65;
 

@@ -16,7 +16,7 @@ public:
   void add(const std::array<float, 3>& radiance, float coverage, const std::array<float, 3>& albedo);
 
   /// Stops at which the middle of what is lit and covered by surfaces lands at a grey: between 0.1 where these are
-  /// black and 0.4 where they are white, as people expect snow to look bright and coal to look dark. Nearly all of it
+  /// black and 0.5 where they are white, as people expect snow to look bright and coal to look dark. Nearly all of it
   /// stays below white, and the mean of the whole picture, background included, lies between 0.3 and 0.65, in values of
   /// sRGB from 0 to 1, as far as that leaves surfaces unburnt. Of a picture without surfaces all that shines counts; 0
   /// where nothing does.

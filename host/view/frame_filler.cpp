@@ -9,7 +9,7 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 /// Room left at the border of the frame.
-constexpr double frame_margin = 1.06;
+constexpr double frame_margin = 1.08;
 
 /// Bounds of what is seen, across the view.
 struct Rectangle {

@@ -1,6 +1,7 @@
 #include "host/view/ground.h"
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pointgi {
