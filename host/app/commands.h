@@ -10,8 +10,8 @@ namespace pointgi {
 
 /// What every command that computes light takes.
 struct LightOptions {
-  std::string input;  ///< scene.toml or cloud
-  std::string output; ///< of render: .exr; empty: the input's name in the working directory; of bake: .ply
+  std::string input;    ///< scene.toml or cloud
+  std::string output;   ///< of render: .exr; empty: the input's name in the working directory; of bake: .ply
   std::string exposure; ///< stops, or "auto"; empty: as the scene has it
   std::string up;       ///< "y", "-z", ...; empty: as the scene has it, or found
   std::string ground;   ///< "auto" or "none"; empty: as the scene has it

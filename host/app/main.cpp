@@ -89,7 +89,8 @@ CLI::Option* add_light_options(CLI::App& command, LightOptions& options, Common&
   command.add_option("SCENE.toml|CLOUD.ply", options.input, input)->required();
   CLI::Option* to = command.add_option("-o,--output", options.output, output);
   command.add_option("--exposure", options.exposure, exposure);
-  command.add_option("--up", options.up, "the axis that points up: y, z, x, -y, -z or -x; default: found, or the scene's")
+  command
+      .add_option("--up", options.up, "the axis that points up: y, z, x, -y, -z or -x; default: found, or the scene's")
       ->check(CLI::IsMember(std::vector<std::string>{"y", "z", "x", "-y", "-z", "-x"}));
   add_device_options(command, options.device, common);
   command.add_option("--seed", options.seed, "seed of the samples (default 1)");
@@ -116,8 +117,9 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
                      "of the path tracer: count only these light paths, e.g. LDE (direct light), LDD+E "
                      "(between surfaces), LE,LD+E (all, the default); D a diffuse surface, S a specular one, + one or "
                      "more, * any number");
-  command.add_option("--ground", render.ground,
-                     "auto puts a ground plane under what stands free, none does not (default: auto of a bare cloud)")
+  command
+      .add_option("--ground", render.ground,
+                  "auto puts a ground plane under what stands free, none does not (default: auto of a bare cloud)")
       ->check(CLI::IsMember({"auto", "none"}));
   command.add_option("--trace", render.trace_file, "write stages and kernels as a Chrome trace to this JSON file");
   command.add_option("--pixelbounds", render.pixel_bounds,

@@ -87,7 +87,7 @@ double ExposureMeter::stops() const {
   if (metered.all == metered.black) return 0.0;
   const double albedo = covered ? albedo_sum_ / static_cast<double>(surfaces_.all - surfaces_.black) : 0.5;
   const double grey = grey_of_black + (grey_of_white - grey_of_black) * albedo;
-  const double unburnt = -metered.quantile(unburnt_share);
+  const double unburnt = -metered.quantile(unburnt_share) - 1.0 / bins_a_stop;
   double stops = std::min(std::log2(grey) - metered.quantile(0.5), unburnt);
   // The mean rises with the exposure: two bisections, each towards its bound.
   const auto at_mean = [&](double mean, double from, double to) {

@@ -74,8 +74,8 @@ public:
 
   bool read(char bytes[], int count) override {
     for (int done = 0; done < count;) {
-      const ssize_t got = ::pread(file_.fd(), bytes + done, static_cast<std::size_t>(count - done),
-                                  static_cast<off_t>(position_));
+      const ssize_t got =
+          ::pread(file_.fd(), bytes + done, static_cast<std::size_t>(count - done), static_cast<off_t>(position_));
       if (got < 0 && errno == EINTR) continue;
       if (got <= 0) throw output_error(file_.final_path(), "read back the file", got == 0 ? EIO : errno);
       done += static_cast<int>(got);
@@ -252,9 +252,9 @@ void ExrWriter::read_rows(const std::vector<std::string>& channels,
       const int last = std::min(y + rows_at_once, window.y1) - 1;
       Imf::FrameBuffer pixels;
       for (std::size_t c = 0; c < channels.size(); ++c)
-        pixels.insert(channels[c], Imf::Slice::Make(Imf::FLOAT, rows.data() + c * width, {window.x0, y}, width,
-                                                    last - y + 1, sizeof(float),
-                                                    sizeof(float) * width * channels.size()));
+        pixels.insert(channels[c],
+                      Imf::Slice::Make(Imf::FLOAT, rows.data() + c * width, {window.x0, y}, width, last - y + 1,
+                                       sizeof(float), sizeof(float) * width * channels.size()));
       image.setFrameBuffer(pixels);
       image.readPixels(y, last);
       for (int row = 0; row <= last - y; ++row)

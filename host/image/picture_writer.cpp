@@ -42,7 +42,8 @@ std::optional<std::array<std::size_t, 3>> colours_of(const std::vector<ChannelNa
   std::array<std::size_t, 3> found{};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string name = prefix + "RGB"[k];
-    const auto at = std::find_if(channels.begin(), channels.end(), [&](const ChannelName& c) { return c.name == name; });
+    const auto at =
+        std::find_if(channels.begin(), channels.end(), [&](const ChannelName& c) { return c.name == name; });
     if (at == channels.end()) return std::nullopt;
     found[k] = static_cast<std::size_t>(at - channels.begin());
   }

@@ -10,7 +10,8 @@ struct SkyFrame {
 };
 
 /// Before it is turned, forward is +y and right +x where z is up, and -z and +x where y is: as a camera looks that
-/// looks north on a map. Right is +x also where -y or -z is up, and +y where x or -x is. Turned by `turn_deg` clockwise as seen from above.
+/// looks north on a map. Right is +x also where -y or -z is up, and +y where x or -x is. Turned by `turn_deg` clockwise
+/// as seen from above.
 SkyFrame sky_frame(UpAxis up, double turn_deg);
 
 /// Unit vector.

@@ -9,7 +9,8 @@ namespace {
 
 EnvironmentMap load_map(const TableReader& table, const std::string& scene_file, UpAxis up) {
   const std::string name = table.need_text("map", "the name of a .hdr or .exr file");
-  const std::string path = std::filesystem::absolute(std::filesystem::path(scene_file).parent_path() / name).lexically_normal().string();
+  const std::string path =
+      std::filesystem::absolute(std::filesystem::path(scene_file).parent_path() / name).lexically_normal().string();
   const double turn = table.number("rotate_deg", limits::angle).value_or(0.0);
   const double scale = table.number("scale", limits::light).value_or(1.0);
   try {

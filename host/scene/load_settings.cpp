@@ -35,8 +35,8 @@ void load_exposure(const TableReader& table, RenderSettings& render) {
   render.auto_exposure = node->is_string() && node->as_string()->get() == "auto";
   if (render.auto_exposure) return;
   if (!node->is_number())
-    table.fail("exposure", std::string("expected \"auto\" or a number ") + limits::exposure.words + ", found " +
-                               found_text(*node));
+    table.fail("exposure",
+               std::string("expected \"auto\" or a number ") + limits::exposure.words + ", found " + found_text(*node));
   render.exposure = *table.number("exposure", limits::exposure);
 }
 

@@ -50,9 +50,9 @@ struct RenderSettings {
 struct CameraSettings {
   Vector3d position{0, 0, 0};
   Vector3d look_at{0, 0, -1};
-  double fov_deg = 40.0;      ///< vertical
-  std::optional<Vector3d> up; ///< instead of the scene's axis
-  bool chosen = false;        ///< the file has a [camera]; without one the program finds a view
+  double fov_deg = 40.0;              ///< vertical
+  std::optional<Vector3d> up;         ///< instead of the scene's axis
+  bool chosen = false;                ///< the file has a [camera]; without one the program finds a view
   std::optional<Backfaces> backfaces; ///< absent: shade, or what a chosen view asks for
   SourcePlace place;
 };

@@ -43,9 +43,10 @@ std::string weak_lamp(const Scene& scene, const PreparedScene& ready) {
     if (light.is_far) continue;
     const double irradiance = light.strength.maxCoeff() / (reach * reach);
     if (irradiance > 0.0 && irradiance < 0.1)
-      return fmt::format("; {} gives {:.2g} W/m2 across half of the scene, which is {:.4g} long, and about 3 would look "
-                         "bright: its power should be {:.2g} times as large",
-                         description_of(light), irradiance, ready.frame.side, 3.0 / irradiance);
+      return fmt::format(
+          "; {} gives {:.2g} W/m2 across half of the scene, which is {:.4g} long, and about 3 would look "
+          "bright: its power should be {:.2g} times as large",
+          description_of(light), irradiance, ready.frame.side, 3.0 / irradiance);
   }
   return {};
 }
@@ -97,9 +98,10 @@ void warn_of_exposure(const PngLight& shown, const Scene& scene, const PreparedS
                 "lower one (daylight wants about -8), or less light",
                 100.0 * shown.clipped_share, shown.exposure);
   else if (shown.mean < dark && shown.lit_share > 0.05)
-    log_warning("the PNG is nearly black at an exposure of {:.4g}, though {:.0f} % of its pixels receive light: --exposure "
-                "auto chooses a higher one{}",
-                shown.exposure, 100.0 * shown.lit_share, weak_lamp(scene, ready));
+    log_warning(
+        "the PNG is nearly black at an exposure of {:.4g}, though {:.0f} % of its pixels receive light: --exposure "
+        "auto chooses a higher one{}",
+        shown.exposure, 100.0 * shown.lit_share, weak_lamp(scene, ready));
 }
 
 void warn_of_view(const RenderTotals& totals, const Scene& scene, const PreparedScene& ready, bool already_warned) {

@@ -50,8 +50,8 @@ LightSettings sun_light(const Vector3d& towards, const Vector3d& strength, doubl
 /// sky's share of that light is as bright as the sky behind it.
 Vector3d light_studio(Scene& scene, const Vector3d& up, double sky_share) {
   const Vector3d sky = sky_share * cool, sun = (1.0 - sky_share) * warm;
-  scene.lights = {sun_light(towards_light(scene, up, sun_elevation_deg), pi / std::sin(sun_elevation_deg * degree) * sun,
-                            soft_sun_deg)};
+  scene.lights = {sun_light(towards_light(scene, up, sun_elevation_deg),
+                            pi / std::sin(sun_elevation_deg * degree) * sun, soft_sun_deg)};
   scene.environment = sky;
   return sky.cwiseQuotient(sky + sun);
 }
@@ -63,9 +63,10 @@ void light_outdoors(Scene& scene, const Vector3d& up) {
   const Vector3d towards = towards_light(scene, up, sun_elevation_deg);
   const Vector3d forward = (towards - towards.dot(up) * up).normalized();
   const SkyFrame frame{forward.cross(up), forward, up};
-  const SkyModel model = make_sky_model(frame, 0.0, sun_elevation_deg, clear_air, grass);
+  SkyModel model = make_sky_model(frame, 0.0, sun_elevation_deg, clear_air, grass);
   const Vector3d all = model.sky_irradiance + model.sun_irradiance * model.sun_cosine;
   const double scale = pi / all.y();
+  model.ground_radiance = 0.5 / scale * cool; // what is behind the land when one looks down at it
   scene.lights = {sun_light(model.towards_sun, scale * model.sun_irradiance, 2.0)};
   scene.sky = std::make_shared<const EnvironmentMap>(
       make_environment_map(sky_image(model, frame, 2 * height, height), frame, scale, "sky"));
@@ -88,7 +89,8 @@ void add_ground(Scene& scene, WorldSplats& splats, const ChosenView& view, const
   entry.file = "the ground";
   entry.material = material.name;
   scene.materials.push_back(material);
-  append_cloud(splats, std::move(ground), scene.materials.back(), static_cast<std::uint32_t>(scene.materials.size() - 1));
+  append_cloud(splats, std::move(ground), scene.materials.back(),
+               static_cast<std::uint32_t>(scene.materials.size() - 1));
   scene.clouds.push_back(std::move(entry));
 }
 

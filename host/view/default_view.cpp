@@ -113,8 +113,9 @@ Vector3d behind_station(const ViewPoints& points, const Vector3d& station, const
 std::string name_of_up(const UpChoice& choice) {
   int axis = 0;
   const double most = choice.up.cwiseAbs().maxCoeff(&axis);
-  const std::string name = most > 0.999 ? std::string(choice.up[axis] < 0.0 ? "-" : "") + "xyz"[axis]
-                                        : fmt::format("[{:.3g}, {:.3g}, {:.3g}]", choice.up.x(), choice.up.y(), choice.up.z());
+  const std::string name = most > 0.999
+                               ? std::string(choice.up[axis] < 0.0 ? "-" : "") + "xyz"[axis]
+                               : fmt::format("[{:.3g}, {:.3g}, {:.3g}]", choice.up.x(), choice.up.y(), choice.up.z());
   return name + " is up (" + choice.reason + ")";
 }
 
@@ -185,7 +186,8 @@ ChosenView given_view(const Scene& scene, const WorldSplats& splats) {
   const ViewPoints points = view_points(splats.cloud, cut_of(CloudKind::model));
   ChosenView view = recognise(splats, points);
   view.up = up_of(scene);
-  view.is_closed_room = (view.kind == CloudKind::room || view.kind == CloudKind::station) && has_ceiling(points, view.up);
+  view.is_closed_room =
+      (view.kind == CloudKind::room || view.kind == CloudKind::station) && has_ceiling(points, view.up);
   return view;
 }
 

@@ -13,10 +13,10 @@ struct ChosenView {
 };
 
 /// Chooses a camera that shows the splats well, and with it whether backs are seen through, where the scene leaves that
-/// open. Models, foliage and sparse points: the front at three quarters, slightly above; an open scan from the side that
-/// was scanned; a depth frame from its sensor; terrain and maps from the south, 35 degrees down; a station's scan from
-/// behind and above the station; rooms from outside, near walls seen through. The splats fill the frame, strays left out.
-/// Up is the scene's where it says so, else the file's, else found (host/view/up.h).
+/// open. Models, foliage and sparse points: the front at three quarters, slightly above; an open scan from the side
+/// that was scanned; a depth frame from its sensor; terrain and maps from the south, 35 degrees down; a station's scan
+/// from behind and above the station; rooms from outside, near walls seen through. The splats fill the frame, strays
+/// left out. Up is the scene's where it says so, else the file's, else found (host/view/up.h).
 ChosenView choose_camera(Scene& scene, const WorldSplats& splats);
 
 /// What there is to say of a view that the scene has.

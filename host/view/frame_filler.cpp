@@ -41,7 +41,8 @@ void fill_frame(Scene& scene, const ViewPoints& points, const Vector3d& from, co
     Rectangle seen;
     for (const Vector3d& p : points.position) {
       const Vector3d d = p - target;
-      if (points.in_frame(p)) seen.add(d.dot(right) / (distance - d.dot(back)), d.dot(upward) / (distance - d.dot(back)));
+      if (points.in_frame(p))
+        seen.add(d.dot(right) / (distance - d.dot(back)), d.dot(upward) / (distance - d.dot(back)));
     }
     target += distance * (0.5 * (seen.low_x + seen.high_x) * right + 0.5 * (seen.low_y + seen.high_y) * upward);
   }
@@ -65,8 +66,8 @@ void look_from(Scene& scene, const ViewPoints& points, const Vector3d& eye, cons
     }
     tangent_x = std::max(seen.high_x, -seen.low_x), tangent_y = std::max(seen.high_y, -seen.low_y);
     if (pass < 2)
-      forward = (forward + 0.5 * (seen.low_x + seen.high_x) * right + 0.5 * (seen.low_y + seen.high_y) * upward)
-                    .normalized();
+      forward =
+          (forward + 0.5 * (seen.low_x + seen.high_x) * right + 0.5 * (seen.low_y + seen.high_y) * upward).normalized();
   }
   const double tangent = std::max({0.05, tangent_y, tangent_x * scene.render.height / scene.render.width});
   scene.camera.position = eye;

@@ -9,7 +9,7 @@ namespace pointgi {
 bool has_ground(const ViewPoints& points, const Vector3d& up);
 
 /// A disc under the points, level with `up`, four times as wide as they are, of splats that are small below them and
-/// grow outwards: some four thousand in all. Complete (complete_cloud()); without colours.
+/// grow outwards: some five thousand in all. Complete (complete_cloud()); without colours.
 PointCloud ground_under(const ViewPoints& points, const Vector3d& up);
 
 } // namespace pointgi

@@ -13,7 +13,8 @@ constexpr double pi = 3.14159265358979323846;
 
 /// A column of the room above one part of its plan.
 struct Column {
-  double floor = -INFINITY, ceiling = INFINITY; ///< heights: the highest level surface below the middle, the lowest above
+  double floor = -INFINITY,
+         ceiling = INFINITY; ///< heights: the highest level surface below the middle, the lowest above
   std::size_t points = 0;
   Vector3d place{0, 0, 0};
 };

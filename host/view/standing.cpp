@@ -94,7 +94,8 @@ UpChoice standing_up(const ViewPoints& points) {
   bool is_z = along_z > clearly * along_y;
   if (!stands) {
     is_z = about_z < symmetric && about_y > 2.0 * about_z;
-    reason = is_z || (about_y < symmetric && about_z > 2.0 * about_y) ? "it is symmetric about it" : "as models have it";
+    reason =
+        is_z || (about_y < symmetric && about_z > 2.0 * about_y) ? "it is symmetric about it" : "as models have it";
   }
   const int which = is_z ? 1 : 0;
   const double sign = is_inverted(up[which], down[which]) ? -1.0 : 1.0;

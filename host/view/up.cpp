@@ -38,26 +38,32 @@ UpChoice of_room(const ViewPoints& points) {
   return of_axis(y > clearly * z ? 1 : 2, 1.0, "most floor and ceiling lie across it");
 }
 
-/// Level surface below the eye less that above it.
-double ground_below(const ViewPoints& points, const Vector3d& up, const Vector3d& eye) {
-  constexpr double level = 0.9;
-  double sum = 0.0;
+/// What faces up less what faces down, of a surface that faces the eye: floors and tables less ceilings. Frames are
+/// seldom level, so that more than what is level counts. As a share of the whole area.
+double facing_up(const ViewPoints& points, const Vector3d& up, const Vector3d& eye) {
+  constexpr double steep = 0.4;
+  double sum = 0.0, area = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (std::fabs(up.dot(points.normal[i].cast<double>())) < level) continue;
-    sum += up.dot(points.position[i] - eye) < 0.0 ? points.area[i] : -points.area[i];
+    const Vector3d normal = points.normal[i].cast<double>();
+    const double towards_eye = normal.dot(eye - points.position[i]),
+                 facing = std::copysign(1.0, towards_eye) * normal.dot(up);
+    area += points.area[i];
+    if (std::fabs(facing) > steep) sum += points.area[i] * facing;
   }
-  return sum;
+  return sum / area;
 }
 
-/// Cameras look along z and count y downwards, or look along -z with y upwards; what looks along x or y is a scanner with
-/// z upwards.
+/// Cameras look along z and count y downwards, or look along -z with y upwards; what looks along x or y is a scanner
+/// with z upwards.
 UpChoice of_depth_frame(const ViewPoints& points, const Vector3d& eye) {
+  constexpr double clear = 0.05;
+  const Vector3d ahead = points.centre() - eye;
   int forward = 0;
-  (points.centre() - eye).cwiseAbs().maxCoeff(&forward);
+  ahead.cwiseAbs().maxCoeff(&forward);
   if (forward != 2) return of_axis(2, 1.0, "the sensor looks across it");
-  const double y_up = ground_below(points, Vector3d::UnitY(), eye);
-  if (y_up == 0.0) return of_axis(1, points.centre().z() > eye.z() ? -1.0 : 1.0, "as depth cameras count");
-  return of_axis(1, y_up > 0.0 ? 1.0 : -1.0, "the larger level surface is below");
+  const double share = facing_up(points, Vector3d::UnitY(), eye);
+  if (std::fabs(share) < clear) return of_axis(1, ahead.z() > 0.0 ? -1.0 : 1.0, "as depth cameras count");
+  return of_axis(1, share > 0.0 ? 1.0 : -1.0, "more faces it than away from it");
 }
 
 /// The largest share of the points in one layer of a fiftieth of the height, in the lower third.

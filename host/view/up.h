@@ -10,10 +10,10 @@ struct UpChoice {
 };
 
 /// `eye`: where the points were seen from, for a depth frame. Scans of stations and maps and foliage: z, against which
-/// gravity pulls. Terrain: its thin axis, on the side that it faces. Rooms: whichever of z and y more surface is across.
-/// Depth frames: whichever way the larger horizontal surface lies below the eye. Sparse points: whichever way more of
-/// them lie in a level layer at the bottom. Models: what they stand on, else the axis that they are symmetric about, else
-/// y.
+/// gravity pulls. Terrain: its thin axis, on the side that it faces. Rooms: whichever of z and y more surface is
+/// across. Depth frames: whichever way more of the surface faces, floors and tables. Sparse points: whichever way more
+/// of them lie in a level layer at the bottom. Models: what they stand on, else the axis that they are symmetric about,
+/// else y.
 UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye);
 
 } // namespace pointgi

@@ -23,8 +23,8 @@ struct ViewPoints {
   bool in_frame(const Vector3d& p) const;
 };
 
-/// `cloud`: complete. Where the structure of neighbourhoods is known, points of no surface are left out, unless there is
-/// hardly any. `cut`: share of the points beyond each end of the bounds.
+/// `cloud`: complete. Where the structure of neighbourhoods is known, points of no surface are left out, unless there
+/// is hardly any. `cut`: share of the points beyond each end of the bounds.
 ViewPoints view_points(const PointCloud& cloud, double cut);
 
 /// Value below which `share` of the values lie; they are reordered. Not of none.

@@ -61,8 +61,8 @@ std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::ve
   const auto points = device.upload(splats);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
-  cl::Kernel kernel = device.kernel(
-      "test/brute_force.cl", backfaces == Backfaces::see_through ? "-D FRONTS_ONLY" : "", "brute_force_closest");
+  cl::Kernel kernel = device.kernel("test/brute_force.cl", backfaces == Backfaces::see_through ? "-D FRONTS_ONLY" : "",
+                                    "brute_force_closest");
   device.launch(kernel, LaunchShape::line(rays.size()), points, static_cast<cl_uint>(splats.size()), queries, answers,
                 static_cast<cl_uint>(rays.size()));
   return device.download(answers, rays.size());

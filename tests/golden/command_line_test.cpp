@@ -463,12 +463,13 @@ TEST_CASE("a PNG that is burnt or nearly black names the exposure, and the lamp 
   CHECK_THAT(burnt.err, Contains("burnt to white at an exposure of 9") && Contains("--exposure auto"));
   CHECK_THAT(render(lit, " --exposure auto").err, Contains("exposure chosen: ") && !Contains("warning"));
   // 120 W in a scene of 5000 units.
-  const std::string vast = "version = 1\n[render]\nsize = [40, 30]\nspp = 4\n"
-                           "[camera]\nposition = [0.0, 3000.0, 5000.0]\nlook_at = [0.0, 0.0, 0.0]\nfov_deg = 40.0\n"
-                           "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
-                           "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 0.0, 0.0]\nnormal = [0.0, 1.0, 0.0]\n"
-                           "radius = 2500.0\nspacing = 100.0\nmaterial = \"grey\"\n"
-                           "[[light]]\ntype = \"point\"\nposition = [0.0, 1500.0, 0.0]\npower_w = [120.0, 120.0, 120.0]\n";
+  const std::string vast =
+      "version = 1\n[render]\nsize = [40, 30]\nspp = 4\n"
+      "[camera]\nposition = [0.0, 3000.0, 5000.0]\nlook_at = [0.0, 0.0, 0.0]\nfov_deg = 40.0\n"
+      "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
+      "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 0.0, 0.0]\nnormal = [0.0, 1.0, 0.0]\n"
+      "radius = 2500.0\nspacing = 100.0\nmaterial = \"grey\"\n"
+      "[[light]]\ntype = \"point\"\nposition = [0.0, 1500.0, 0.0]\npower_w = [120.0, 120.0, 120.0]\n";
   const Run dark = render(vast, "");
   CHECK(dark.code == 0);
   CHECK_THAT(dark.err, Contains("nearly black") && Contains("--exposure auto") &&
