@@ -5,6 +5,8 @@
 #include "host/cloud/readers/las_header.h"
 #include "host/cloud/readers/las_read.h"
 #include "host/cloud/readers/mesh.h"
+#include "host/cloud/readers/pcd_header.h"
+#include "host/cloud/readers/pcd_read.h"
 #include "host/cloud/readers/ply.h"
 #include "host/error.h"
 #include <algorithm>
@@ -55,7 +57,7 @@ const std::vector<CloudReader>& cloud_readers() {
       {"LAS", {".las"}, is_las, read_las},
       {"LAZ", {".laz"}, is_laz, read_las},
       {"E57", {".e57"}, is_e57, read_e57},
-      {"PCD", {".pcd"}, nullptr, nullptr},
+      {"PCD", {".pcd"}, is_pcd, read_pcd},
       {"PTS", {".pts"}, nullptr, nullptr},
       {"PTX", {".ptx"}, nullptr, nullptr},
       {"XYZ", {".xyz"}, nullptr, nullptr},
