@@ -31,6 +31,19 @@ public:
     });
   }
 
+  /// The same on this thread, piece after piece.
+  template <class Body>
+  void for_each_piece_in_order(const Body& body) const {
+    if (!chunks_)
+      return pointgi::for_each_piece_in_order(file_, header_.points_begin, header_.record_bytes,
+                                              static_cast<std::size_t>(header_.points), body);
+    for (std::size_t chunk = 0; chunk < chunks_->size(); ++chunk) {
+      const std::vector<char> records = chunks_->decode(chunk);
+      const auto first = static_cast<std::size_t>(chunks_->first(chunk));
+      body(first, first + static_cast<std::size_t>(chunks_->count(chunk)), records.data());
+    }
+  }
+
   /// Whether test(record) is true for any of the records.
   template <class Test>
   bool any(const Test& test) const {
