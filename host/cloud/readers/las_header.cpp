@@ -42,7 +42,7 @@ HeaderBytes read_bytes(const InputFile& file) {
   return bytes;
 }
 
-void read_layout(const InputFile& file, const HeaderBytes& bytes, LasHeader& header) {
+void read_layout(const InputFile& file, const HeaderBytes& bytes, bool may_be_compressed, LasHeader& header) {
   const int major = static_cast<unsigned char>(bytes[at_major]);
   header.minor = static_cast<unsigned char>(bytes[at_minor]);
   if (major != 1)
@@ -50,8 +50,9 @@ void read_layout(const InputFile& file, const HeaderBytes& bytes, LasHeader& hea
   if (header.minor > 4)
     header.warnings.push_back("the file is of LAS version 1." + to_string(header.minor) +
                               "; it was read as version 1.4. Save it as 1.4 if the points look wrong.");
-  const unsigned format = static_cast<unsigned char>(bytes[at_format]);
-  if (is_laz(bytes.data(), bytes.size()))
+  header.is_compressed = is_laz(bytes.data(), bytes.size());
+  const unsigned format = static_cast<unsigned char>(bytes[at_format]) & (header.is_compressed ? 0x3fu : 0xffu);
+  if (header.is_compressed && !may_be_compressed)
     fail(file, at_format,
          "the points are compressed (LAZ), expected plain LAS; convert the file with `scripts/import " + file.path() +
              " OUT.ply`");
@@ -88,16 +89,19 @@ void read_layout(const InputFile& file, const HeaderBytes& bytes, LasHeader& hea
 void choose_count(const InputFile& file, const HeaderBytes& bytes, LasHeader& header) {
   const std::uint64_t narrow = little_endian<std::uint32_t>(&bytes[at_count]);
   const std::uint64_t wide = header.has_wide_count ? little_endian<std::uint64_t>(&bytes[at_wide_count]) : 0;
-  const std::uint64_t room = (file.size() - header.points_begin) / header.record_bytes;
+  // How many compressed points there can be is known to their decoder.
+  const std::uint64_t room = header.is_compressed ? std::numeric_limits<std::uint64_t>::max()
+                                                  : (file.size() - header.points_begin) / header.record_bytes;
   const bool wide_counts = wide != 0 && (wide <= room || narrow == 0 || narrow > room);
   header.points = wide_counts ? wide : narrow;
   const std::size_t place = wide_counts ? at_wide_count : at_count;
   if (header.points == 0)
     fail(file, place,
          "the header counts 0 points" +
-             (room > 0 ? ", though the file has room for " + to_string(room) +
-                             "; the program that wrote it was stopped before its end, write it again"
-                       : std::string("; the cloud is empty")));
+             (room > 0 && !header.is_compressed
+                  ? ", though the file has room for " + to_string(room) +
+                        "; the program that wrote it was stopped before its end, write it again"
+                  : std::string("; the cloud is empty")));
   if (header.points > room)
     fail(file, place,
          "the header counts " + to_string(header.points) + " points of " + to_string(header.record_bytes) +
@@ -112,7 +116,7 @@ void choose_count(const InputFile& file, const HeaderBytes& bytes, LasHeader& he
                               " were read. Save the file again with a program that sets both if points are missing.");
   const bool nothing_follows = (header.minor < 3 || little_endian<std::uint64_t>(&bytes[at_waveforms]) == 0) &&
                                (!header.has_wide_count || little_endian<std::uint32_t>(&bytes[at_evlr_count]) == 0);
-  if (nothing_follows && header.points < room)
+  if (nothing_follows && header.points < room && !header.is_compressed)
     header.warnings.push_back("the file has room for " + to_string(room) + " points, its header counts " +
                               to_string(header.points) +
                               ", which were read. Repair the header, for example with `lasinfo -repair`, if points "
@@ -178,10 +182,10 @@ std::size_t las_colour_byte(unsigned format) {
   return byte.at(format);
 }
 
-LasHeader read_las_header(const InputFile& file) {
+LasHeader read_las_header(const InputFile& file, bool may_be_compressed) {
   LasHeader header;
   const HeaderBytes bytes = read_bytes(file);
-  read_layout(file, bytes, header);
+  read_layout(file, bytes, may_be_compressed, header);
   choose_count(file, bytes, header);
   header.vlrs_end = read_vlrs(file, header.header_bytes, header.points_begin,
                               little_endian<std::uint32_t>(&bytes[at_vlr_count]), false, header);

@@ -25,9 +25,10 @@ struct LasHeader {
   std::uint64_t vlrs_end = 0;     ///< byte behind the last variable length record before the points
   std::uint64_t points_begin = 0; ///< byte of the first point record
   std::size_t record_bytes = 0;   ///< of a point record, its format's and extra ones
-  std::uint64_t points = 0;       ///< at least 1; the file has as many records
+  std::uint64_t points = 0;       ///< at least 1; the file has as many records, unless they are compressed
   Eigen::Vector3d scale;          ///< position = stored integer times scale plus offset
   Eigen::Vector3d offset;
+  bool is_compressed = false;  ///< LAZ: points_begin is where their compressed bytes begin
   bool has_wide_count = false; ///< the 64-bit count of points of version 1.4
   bool says_wkt = false;       ///< coordinates are described by text, not by GeoKeys
   std::vector<LasVlr> vlrs;    ///< those before the points first, in file order
@@ -48,8 +49,8 @@ std::size_t las_record_bytes(unsigned format);
 /// Whether a format has red, green and blue, and at which byte of the record. 0: it has none.
 std::size_t las_colour_byte(unsigned format);
 
-/// Throws Error(input) "<file>: byte N: …" where the file is no LAS, compressed, without points or shorter than its
-/// header says. Bounds are not looked at: they are often wrong.
-LasHeader read_las_header(const InputFile& file);
+/// Throws Error(input) "<file>: byte N: …" where the file is no LAS, without points or shorter than its header says, or
+/// compressed unless that `may_be_compressed`. Bounds are not looked at: they are often wrong.
+LasHeader read_las_header(const InputFile& file, bool may_be_compressed = false);
 
 } // namespace pointgi

@@ -2,8 +2,8 @@
 #include "host/cloud/geographic.h"
 #include "host/cloud/readers/las_crs.h"
 #include "host/cloud/readers/las_fields.h"
+#include "host/cloud/readers/las_records.h"
 #include "host/cloud/readers/point_sink.h"
-#include "host/cloud/readers/record_pieces.h"
 #include <atomic>
 #include <fmt/format.h>
 
@@ -29,15 +29,13 @@ bool is_noise(const char* record, unsigned format) {
 }
 
 /// Converters to a format with colours leave them at 0 where the scan had none.
-void leave_out_black(const InputFile& file, const LasHeader& header, std::vector<LasColumn>& columns,
+void leave_out_black(const LasRecords& records, const LasHeader& header, std::vector<LasColumn>& columns,
                      CloudReport& report) {
   const std::size_t byte = las_colour_byte(header.format);
   const auto is_coloured = [byte](const char* record) {
     return std::any_of(record + byte, record + byte + 6, [](char c) { return c != 0; });
   };
-  if (byte == 0 ||
-      any_record(file, header.points_begin, header.record_bytes, static_cast<std::size_t>(header.points), is_coloured))
-    return;
+  if (byte == 0 || records.any(is_coloured)) return;
   columns.erase(std::remove_if(columns.begin(), columns.end(),
                                [byte](const LasColumn& c) { return c.byte >= byte && c.byte < byte + 6; }),
                 columns.end());
@@ -52,27 +50,27 @@ FieldPlan plan_las(const std::vector<LasColumn>& columns, const ReadRequest& req
   return plan_fields(std::move(fields), request, path, "byte 104", report);
 }
 
-PointCloud read_points(const InputFile& file, const LasHeader& header, const std::vector<LasColumn>& columns,
-                       const FieldPlan& plan, Marked& marked, CloudReport& report) {
+PointCloud read_points(const InputFile& file, const LasRecords& records, const LasHeader& header,
+                       const std::vector<LasColumn>& columns, const FieldPlan& plan, Marked& marked,
+                       CloudReport& report) {
   std::vector<std::size_t> read;
   for (std::size_t f = 0; f < columns.size(); ++f)
     if (plan.is_read(f)) read.push_back(f);
   const auto count = static_cast<std::size_t>(header.points);
   PointSink sink(plan, count, file.path());
-  for_each_piece(file, header.points_begin, header.record_bytes, count,
-                 [&](std::size_t first, std::size_t end, const char* record) {
-                   std::vector<double> row(columns.size());
-                   std::size_t withheld = 0, noise = 0;
-                   for (std::size_t i = first; i < end; ++i, record += header.record_bytes) {
-                     for (const std::size_t f : read)
-                       row[f] = las_value(record, columns[f]);
-                     sink.put(i, row.data());
-                     withheld += is_withheld(record, header.format) ? 1u : 0u;
-                     noise += is_noise(record, header.format) ? 1u : 0u;
-                   }
-                   marked.withheld += withheld;
-                   marked.noise += noise;
-                 });
+  records.for_each_piece([&](std::size_t first, std::size_t end, const char* record) {
+    std::vector<double> row(columns.size());
+    std::size_t withheld = 0, noise = 0;
+    for (std::size_t i = first; i < end; ++i, record += header.record_bytes) {
+      for (const std::size_t f : read)
+        row[f] = las_value(record, columns[f]);
+      sink.put(i, row.data());
+      withheld += is_withheld(record, header.format) ? 1u : 0u;
+      noise += is_noise(record, header.format) ? 1u : 0u;
+    }
+    marked.withheld += withheld;
+    marked.noise += noise;
+  });
   return sink.finish(report);
 }
 
@@ -120,13 +118,16 @@ void place(const PointCloud& cloud, const LasHeader& header, LasCoordinates coor
 
 PointCloud read_las(const std::string& path, const ReadRequest& request, CloudReport& report) {
   const InputFile file(path);
-  const LasHeader header = read_las_header(file);
-  report.format = fmt::format("LAS 1.{}, point format {}", header.minor, header.format);
+  const LasHeader header = read_las_header(file, true);
+  const LasRecords records(file, header);
+  report.format =
+      fmt::format("{} 1.{}, point format {}", header.is_compressed ? "LAZ" : "LAS", header.minor, header.format);
   report.warnings.insert(report.warnings.end(), header.warnings.begin(), header.warnings.end());
   std::vector<LasColumn> columns = las_columns(header, read_las_extras(file, header, report.warnings));
-  leave_out_black(file, header, columns, report);
+  leave_out_black(records, header, columns, report);
   Marked marked;
-  PointCloud cloud = read_points(file, header, columns, plan_las(columns, request, path, report), marked, report);
+  PointCloud cloud =
+      read_points(file, records, header, columns, plan_las(columns, request, path, report), marked, report);
   tell_of_marked(marked, header, report);
   place(cloud, header, las_coordinates(file, header), report);
   return cloud;

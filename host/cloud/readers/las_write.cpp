@@ -1,6 +1,7 @@
 #include "host/cloud/readers/las_write.h"
 #include "host/atomic_file.h"
 #include "host/cloud/readers/las_fields.h"
+#include "host/cloud/readers/las_records.h"
 #include "host/run.h"
 #include <algorithm>
 #include <cmath>
@@ -149,6 +150,29 @@ void copy_bytes(const InputFile& from, std::uint64_t begin, std::uint64_t end, A
   }
 }
 
+/// Copies a part of the file that variable length records lie in; those of `gone` keep their place and become LASF_Spec
+/// 7, superseded.
+void copy_records(const InputFile& from, std::uint64_t begin, std::uint64_t end, const std::vector<const LasVlr*>& gone,
+                  AtomicFile& to) {
+  for (const LasVlr* vlr : gone) {
+    if (vlr->begin < begin || vlr->begin + vlr_head > end) continue;
+    copy_bytes(from, begin, vlr->begin + 2, to);
+    std::array<char, 18> superseded{};
+    const std::string user = "LASF_Spec";
+    std::copy(user.begin(), user.end(), superseded.begin());
+    put(&superseded[16], std::uint16_t{7});
+    to.write(superseded.data(), superseded.size());
+    begin = vlr->begin + 20;
+  }
+  copy_bytes(from, begin, end, to);
+}
+
+/// What the file has behind its points, from this byte on.
+std::uint64_t tail_of(const InputFile& file, const LasHeader& header) {
+  if (!header.is_compressed) return header.points_begin + header.points * header.record_bytes;
+  return header.vlrs.size() > header.vlrs_before ? header.vlrs[header.vlrs_before].begin : file.size();
+}
+
 /// The Extra Bytes record, its head as it was where there was one.
 std::vector<char> extra_vlr(const InputFile& file, const LasVlr* old, const Layout& layout) {
   std::vector<char> vlr(vlr_head, '\0');
@@ -166,23 +190,24 @@ std::vector<char> extra_vlr(const InputFile& file, const LasVlr* old, const Layo
   return vlr;
 }
 
-/// What an old header says of places and counts, made true of the new file.
+/// What an old header says of places, counts and compression, made true of the new file.
 std::vector<char> new_header(const InputFile& file, const LasHeader& header, const Layout& layout,
                              std::uint64_t points_begin, std::size_t vlr_count) {
   std::vector<char> bytes(header.header_bytes);
   file.read(0, bytes.data(), bytes.size());
-  const std::uint64_t shift =
-      points_begin - header.points_begin + header.points * (layout.record_bytes - header.record_bytes);
   if (points_begin > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::input, file.path() + ": its variable length records leave no room for another; write a "
                                                 "PLY file instead");
   put(&bytes[96], static_cast<std::uint32_t>(points_begin));
   put(&bytes[100], static_cast<std::uint32_t>(vlr_count));
+  bytes[104] = static_cast<char>(header.format);
   put(&bytes[105], static_cast<std::uint16_t>(layout.record_bytes));
   const bool counts_in_32_bits = little_endian<std::uint32_t>(&bytes[107]) != 0;
   if (counts_in_32_bits) put(&bytes[107], static_cast<std::uint32_t>(header.points));
+  const std::uint64_t old_tail = tail_of(file, header), tail = points_begin + header.points * layout.record_bytes;
   const auto move_on = [&](std::size_t at) {
-    if (const auto place = little_endian<std::uint64_t>(&bytes[at]); place != 0) put(&bytes[at], place + shift);
+    if (const auto place = little_endian<std::uint64_t>(&bytes[at]); place != 0)
+      put(&bytes[at], place - old_tail + tail);
   };
   if (header.minor >= 3 && bytes.size() >= 235) move_on(227); // waveforms
   if (header.has_wide_count) {
@@ -193,24 +218,19 @@ std::vector<char> new_header(const InputFile& file, const LasHeader& header, con
 }
 
 void write_head(const InputFile& file, const LasHeader& header, const Layout& layout, const LasVlr* old,
-                AtomicFile& out) {
-  if (layout.entries.empty()) { // nothing is declared that was not
-    const std::vector<char> head = new_header(file, header, layout, header.points_begin, header.vlrs_before);
-    out.write(head.data(), head.size());
-    copy_bytes(file, header.header_bytes, header.points_begin, out);
-    return;
-  }
+                const std::vector<const LasVlr*>& gone, AtomicFile& out) {
   const bool in_place = old != nullptr && old < header.vlrs.data() + header.vlrs_before;
-  const std::vector<char> vlr = extra_vlr(file, in_place ? old : nullptr, layout);
+  std::vector<char> vlr;
+  if (!layout.entries.empty()) vlr = extra_vlr(file, in_place ? old : nullptr, layout);
   const std::uint64_t old_begin = in_place ? old->begin : header.vlrs_end;
-  const std::uint64_t old_end = in_place ? old->data + old->bytes : header.vlrs_end;
+  const std::uint64_t old_end = in_place && !vlr.empty() ? old->data + old->bytes : old_begin;
   const std::vector<char> head =
       new_header(file, header, layout, header.points_begin + vlr.size() - (old_end - old_begin),
-                 header.vlrs_before + (in_place ? 0 : 1));
+                 header.vlrs_before + (in_place || vlr.empty() ? 0 : 1));
   out.write(head.data(), head.size());
-  copy_bytes(file, header.header_bytes, old_begin, out);
+  copy_records(file, header.header_bytes, old_begin, gone, out);
   out.write(vlr.data(), vlr.size());
-  copy_bytes(file, old_end, header.points_begin, out);
+  copy_records(file, old_end, header.points_begin, gone, out);
 }
 
 void put_colour(char* to, const Eigen::Vector3f& colour) {
@@ -223,35 +243,34 @@ void write_points(const InputFile& file, const LasHeader& header, const Layout& 
                   const std::vector<Eigen::Vector3f>& colour, AtomicFile& out) {
   const std::size_t old_bytes = header.record_bytes, new_bytes = layout.record_bytes;
   const std::size_t colour_byte = las_colour_byte(header.format);
-  const std::size_t records_each = std::max<std::size_t>(1, piece_bytes / new_bytes);
-  const auto count = static_cast<std::size_t>(header.points);
-  std::vector<char> from(records_each * old_bytes), to(records_each * new_bytes);
-  for (std::size_t first = 0; first < count; first += records_each) {
+  std::vector<char> to;
+  LasRecords(file, header).for_each_piece_in_order([&](std::size_t first, std::size_t end, const char* from) {
     stop_if_asked();
-    const std::size_t records = std::min(records_each, count - first);
-    file.read(header.points_begin + static_cast<std::uint64_t>(first) * old_bytes, from.data(), records * old_bytes);
-    for (std::size_t i = 0; i < records; ++i) {
-      char* record = &to[i * new_bytes];
-      std::copy_n(&from[i * old_bytes], old_bytes, record);
-      if (!colour.empty() && colour_byte != 0) put_colour(record + colour_byte, colour[first + i]);
+    to.resize((end - first) * new_bytes);
+    for (std::size_t i = first; i < end; ++i, from += old_bytes) {
+      char* record = &to[(i - first) * new_bytes];
+      std::copy_n(from, old_bytes, record);
+      if (!colour.empty() && colour_byte != 0) put_colour(record + colour_byte, colour[i]);
       for (const Placed& placed : layout.columns) {
         const FieldInfo& info = placed.column->info;
-        put_value(record + placed.byte, info.type, (placed.column->values[first + i] - info.offset) / info.scale);
+        put_value(record + placed.byte, info.type, (placed.column->values[i] - info.offset) / info.scale);
       }
     }
-    out.write(to.data(), records * new_bytes);
-  }
+    out.write(to.data(), to.size());
+  });
 }
 
-/// What follows the points. An Extra Bytes record there is superseded (LASF_Spec 7) by the one before the points.
-void write_tail(const InputFile& file, const LasHeader& header, const LasVlr* old, AtomicFile& out) {
-  const std::uint64_t points_end = header.points_begin + header.points * header.record_bytes;
-  if (old == nullptr || old->begin < points_end) return copy_bytes(file, points_end, file.size(), out);
-  copy_bytes(file, points_end, old->begin + 18, out);
-  std::array<char, 2> superseded{};
-  put(superseded.data(), std::uint16_t{7});
-  out.write(superseded.data(), superseded.size());
-  copy_bytes(file, old->begin + 20, file.size(), out);
+/// Records that are not true of the new file: of the compression that is gone, of the places of compressed points
+/// (COPC), and the extra bytes that another one declares now.
+std::vector<const LasVlr*> superseded(const LasHeader& header, const LasVlr* extra) {
+  std::vector<const LasVlr*> gone;
+  for (const LasVlr& vlr : header.vlrs) {
+    const bool is_packing = header.is_compressed && (vlr.user == "laszip encoded" || vlr.user == "copc");
+    const bool is_late_extra = &vlr == extra && &vlr >= header.vlrs.data() + header.vlrs_before;
+    if (is_packing || is_late_extra) gone.push_back(&vlr);
+  }
+  std::sort(gone.begin(), gone.end(), [](const LasVlr* a, const LasVlr* b) { return a->begin < b->begin; });
+  return gone;
 }
 
 /// Such a mismatch is a fault of the caller's, not of the user's.
@@ -273,20 +292,21 @@ void check(const LasHeader& header, const std::string& path, const std::vector<F
 } // namespace
 
 bool las_holds_colour(const std::string& path) {
-  return las_colour_byte(read_las_header(InputFile(path)).format) != 0;
+  return las_colour_byte(read_las_header(InputFile(path), true).format) != 0;
 }
 
 void write_las_with_columns(const std::string& source_las, const std::string& output, const std::vector<Field>& columns,
                             const std::vector<Eigen::Vector3f>& colour) {
   const InputFile file(source_las);
-  const LasHeader header = read_las_header(file);
+  const LasHeader header = read_las_header(file, true);
   check(header, output, columns, colour);
   const Layout layout = plan_records(file, header, columns);
   const LasVlr* old = header.find("LASF_Spec", 4);
+  const std::vector<const LasVlr*> gone = superseded(header, old);
   AtomicFile out(output);
-  write_head(file, header, layout, old, out);
+  write_head(file, header, layout, old, gone, out);
   write_points(file, header, layout, colour, out);
-  write_tail(file, header, old, out);
+  copy_records(file, tail_of(file, header), file.size(), gone, out);
   out.commit();
 }
 

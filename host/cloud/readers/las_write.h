@@ -17,7 +17,7 @@ bool las_holds_colour(const std::string& path);
 /// bytes; where the file has extra bytes of that name and type they are written over, so that a second run leaves one
 /// of each. `colour` ([0,1], as the file is to have it; empty: none) replaces red, green and blue, 16 bit, where the
 /// format has them; a colour that is not finite leaves the record's own. Atomic: `output` may be `source_las`. Throws
-/// Error(input) when the source cannot be read (compressed, truncated) or has no room for so many extra bytes,
+/// Error(input) when the source cannot be read or has no room for so many extra bytes,
 /// Error(output), and Error(internal) where lengths differ from the points' number.
 void write_las_with_columns(const std::string& source_las, const std::string& output, const std::vector<Field>& columns,
                             const std::vector<Eigen::Vector3f>& colour);

@@ -5,6 +5,8 @@
 #include "host/cloud/readers/las_header.h"
 #include "host/cloud/readers/las_read.h"
 #include "host/cloud/readers/mesh.h"
+#include "host/cloud/readers/pcd_header.h"
+#include "host/cloud/readers/pcd_read.h"
 #include "host/cloud/readers/ply.h"
 #include "host/error.h"
 #include <algorithm>
@@ -22,13 +24,7 @@ bool is_ply(const char* data, std::size_t size) {
   return begins_with(data, size, "ply\n") || begins_with(data, size, "ply\r");
 }
 
-const char* const import_it = "make a PLY file of it: `scripts/import SCAN OUT.ply`";
 const char* const export_it = "export it as E57, LAS or PLY with the program that wrote it";
-
-std::string with_path(std::string text, const std::string& path) {
-  const std::size_t at = text.find("SCAN");
-  return at == std::string::npos ? text : text.replace(at, 4, path);
-}
 
 bool has_extension_of(const std::string& path, const CloudReader& reader) {
   return std::any_of(reader.extensions.begin(), reader.extensions.end(),
@@ -59,9 +55,9 @@ const std::vector<CloudReader>& cloud_readers() {
   static const std::vector<CloudReader> readers{
       {"PLY", {".ply"}, is_ply, read_ply},
       {"LAS", {".las"}, is_las, read_las},
-      {"LAZ", {".laz"}, is_laz, nullptr, import_it},
+      {"LAZ", {".laz"}, is_laz, read_las},
       {"E57", {".e57"}, is_e57, read_e57},
-      {"PCD", {".pcd"}, nullptr, nullptr},
+      {"PCD", {".pcd"}, is_pcd, read_pcd},
       {"PTS", {".pts"}, nullptr, nullptr},
       {"PTX", {".ptx"}, nullptr, nullptr},
       {"XYZ", {".xyz"}, nullptr, nullptr},
@@ -83,7 +79,7 @@ PointCloud read_cloud(const std::string& path, const ReadRequest& request, Cloud
   if (reader == nullptr) return sample_mesh(path, request.spacing, report);
   if (reader->read != nullptr) return reader->read(path, request, report);
   const char* instead = reader->instead != nullptr ? reader->instead : "convert it to PLY, with CloudCompare or PDAL";
-  throw Error(ErrorKind::input, path + ": " + reader->format + " is not read directly; " + with_path(instead, path));
+  throw Error(ErrorKind::input, path + ": " + reader->format + " is not read directly; " + instead);
 }
 
 } // namespace pointgi

@@ -20,7 +20,7 @@ struct CloudReader {
   bool (*recognises)(const char* data, std::size_t size);
   /// The points of the file, with what it says of them; null: the format is known and not read. Throws Error(input).
   PointCloud (*read)(const std::string& path, const ReadRequest& request, CloudReport& report);
-  /// Of a format that is not read: what to do instead; SCAN stands for the file's path.
+  /// Of a format that is not read: what to do instead.
   const char* instead = nullptr;
 };
 

@@ -32,6 +32,18 @@ void for_each_piece(const InputFile& file, std::uint64_t begin, std::size_t reco
   });
 }
 
+/// The same on this thread, piece after piece.
+template <class Body>
+void for_each_piece_in_order(const InputFile& file, std::uint64_t begin, std::size_t record_bytes, std::size_t count,
+                             const Body& body) {
+  const std::size_t each = detail::records_each(record_bytes);
+  for (std::size_t first = 0; first < count; first += each) {
+    const std::size_t end = std::min(first + each, count);
+    const std::unique_ptr<char[]> records = detail::read_records(file, begin, record_bytes, first, end);
+    body(first, end, static_cast<const char*>(records.get()));
+  }
+}
+
 /// Whether test(record) is true for any of the records; those behind the first such piece are not all read.
 template <class Test>
 bool any_record(const InputFile& file, std::uint64_t begin, std::size_t record_bytes, std::size_t count,

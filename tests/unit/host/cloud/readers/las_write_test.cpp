@@ -3,6 +3,7 @@
 #include "host/cloud/readers/las_write.h"
 #include "host/error.h"
 #include "tests/support/las_bytes.h"
+#include "tests/support/laz_bytes.h"
 #include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -134,6 +135,21 @@ TEST_CASE("las write: what lies behind the points moves with them") {
   CHECK(header.vlrs[2].id == 7); // superseded
   CHECK(header.vlrs[3].user == "later");
   CHECK(contents(output).substr(header.vlrs[3].data) == "end");
+}
+
+TEST_CASE("las write: compressed points come out plain") {
+  const TemporaryFolder folder;
+  for (const LazSample& sample : laz_samples()) {
+    INFO("point format " << sample.format);
+    const std::string packed = folder.write("a.laz", laz_file(sample, true));
+    const std::string plain = folder.write("a.las", laz_file(sample, false)), output = folder.file("out.las");
+    const std::vector<Field> columns{{{"sky", FieldType::f32, 1.0, 0.0}, std::vector<double>(laz_points, 0.5)}};
+    CHECK(las_holds_colour(packed));
+    write_las_with_columns(packed, output, columns, {});
+    CHECK(records_of(output) == records_of(plain));
+    CHECK(values_of(read_all(output), "sky") == std::vector<double>(laz_points, 0.5));
+    CHECK_THAT(contents(output), !Contains("laszip encoded"));
+  }
 }
 
 TEST_CASE("las write: colours replace the file's where the format has any") {

@@ -1,6 +1,7 @@
 /// Which file is read by whom.
 #include "host/cloud/readers/readers.h"
 #include "host/error.h"
+#include "tests/support/laz_bytes.h"
 #include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
 #include <set>
@@ -34,24 +35,12 @@ TEST_CASE("a file is read by its extension, whatever its case", "[readers]") {
   CHECK(mesh.size() < 60);
 }
 
-/// The first bytes of a LAS file, whose points are packed or not.
-std::string las_begin(bool packed) {
-  std::string bytes(227, '\0');
-  bytes.replace(0, 4, "LASF");
-  bytes[104] = static_cast<char>(packed ? 0x83 : 0x03);
-  return bytes;
-}
-
-TEST_CASE("a scanner's own format is named, with the command that makes a PLY file of it", "[readers]") {
+TEST_CASE("a format that is not read is named, with what to do", "[readers]") {
   const TemporaryFolder folder;
   CloudReport report;
-  for (const char* name : {"scan.laz", "scan.copc.LAZ"}) {
-    const std::string path = folder.write(name, "anything");
-    CHECK_THROWS_WITH(read_cloud(path, {}, report),
-                      Contains("is not read directly") && Contains("`scripts/import " + path + " OUT.ply`"));
-  }
   CHECK_THROWS_WITH(read_cloud(folder.write("scan.ply.gz", "\x1f\x8b"), {}, report), Contains("unpack it first"));
-  CHECK_THROWS_WITH(read_cloud(folder.write("scan.fls", "?"), {}, report), Contains("export it as E57"));
+  CHECK_THROWS_WITH(read_cloud(folder.write("scan.FLS", "?"), {}, report),
+                    Contains("scan of FARO is not read directly") && Contains("export it as E57"));
   CHECK_THROWS_WITH(read_cloud(folder.file("none.e57"), {}, report), Contains("cannot read the file"));
 }
 
@@ -64,11 +53,14 @@ TEST_CASE("what a file holds decides where its name says something else", "[read
     CloudReport report;
     CHECK(read_cloud(folder.write(name, ply), {}, report).size() == 1);
   }
+  const LazSample& sample = laz_samples().front();
+  for (const char* name : {"b.las", "b.laz", "b.ply", "b"})
+    for (const bool compressed : {false, true}) {
+      INFO(name << ", compressed: " << compressed);
+      CloudReport report;
+      CHECK(read_cloud(folder.write(name, laz_file(sample, compressed)), {}, report).size() == laz_points);
+    }
   CloudReport report;
-  CHECK_THROWS_WITH(read_cloud(folder.write("packed.las", las_begin(true)), {}, report),
-                    Contains("LAZ is not read directly"));
-  CHECK_THROWS_WITH(read_cloud(folder.write("no_laz.laz", las_begin(false)), {}, report),
-                    !Contains("LAZ is not read directly"));
   CHECK_THROWS_WITH(read_cloud(folder.write("b.ply", "ASTM-E57 and more"), {}, report),
                     Contains("the file ends within its header"));
 }
