@@ -104,7 +104,7 @@ std::vector<std::string> choose_lights(Scene& scene, WorldSplats& splats, const 
     return {"light chosen: sun and clear sky"};
   }
   const double albedo = mean_albedo(splats.cloud);
-  const Vector3d as_bright = light_studio(scene, view.up, std::clamp(0.35 + 0.5 * albedo, 0.4, 0.72));
+  const Vector3d as_bright = light_studio(scene, view.up, std::clamp(0.3 + 0.38 * albedo, 0.35, 0.6));
   const bool grounded = scene.ground && stands_free(view) && !view.is_open && scene.shapes.empty() &&
                         !has_ground(view_points(splats.cloud, 0.005), view.up);
   if (grounded) add_ground(scene, splats, view, as_bright);

@@ -44,6 +44,7 @@ bool exempt(const std::string& command) {
       "pdal ",                   // a converter that need not be installed
       "scripts/import",          // installs packages of Python; has tests of its own
       "pointgi devices --check", // compiles every program for minutes: part of the device tests
+      "scripts/gallery",
       "scripts/bench",
       "build/release/bench" // measurements, minutes to hours
   };
