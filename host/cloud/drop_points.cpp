@@ -51,6 +51,7 @@ std::size_t keep_points(PointCloud& cloud, Keep keep) {
   keep_renumbered(cloud.colour, number, kept);
   keep_renumbered(cloud.radius, number, kept);
   keep_renumbered(cloud.area, number, kept);
+  keep_renumbered(cloud.opacity, number, kept);
   return n - kept;
 }
 
@@ -63,6 +64,7 @@ std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& optio
     if (!cloud.position[i].allFinite()) return false;
     if (!cloud.colour.empty() && !cloud.colour[i].allFinite()) return false;
     if (!cloud.area.empty() && !positive(cloud.area[i])) return false;
+    if (!cloud.opacity.empty() && !(cloud.opacity[i] >= least_opacity)) return false;
     if (use_radius && !positive(cloud.radius[i])) return false;
     return !use_normal || (cloud.normal[i].allFinite() && std::isnormal(cloud.normal[i].stableNorm()));
   };

@@ -3,9 +3,13 @@
 
 namespace pointgi {
 
-/// Removes the points that can not be used: position, colour or given area not finite; and, where `options` use them,
-/// normal not finite or of no length, radius not finite or not above 0 (denormal counts as 0), area likewise. What is
-/// left keeps its order; triangles are renumbered, those that refer to a removed point (or to none) go too.
+/// Gaussians whose opacity is less than this show next to nothing. [0,1]
+constexpr float least_opacity = 0.1f;
+
+/// Removes the points that can not be used: position, colour or given area not finite; opacity below
+/// least_opacity; and, where `options` use them, normal not finite or of no length, radius not finite or not above 0
+/// (denormal counts as 0), area likewise. What is left keeps its order; triangles are renumbered, those that refer to
+/// a removed point (or to none) go too.
 /// Returns how many points went.
 std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& options);
 

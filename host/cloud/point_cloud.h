@@ -25,12 +25,14 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> colour; ///< [0,1] a channel, encoded as the file has it (usually sRGB)
   std::vector<float> radius;           ///< splat radius r_i, world units
   std::vector<float> area;             ///< effective area A_i, world units squared (method.md §4)
+  std::vector<float> opacity;          ///< [0,1], of Gaussians: complete_cloud() drops the faintest
   std::vector<Structure> structure;    ///< filled by complete_cloud()
   std::vector<std::uint32_t> record;   ///< number of the point in its file, from 0; empty: its own index
   std::vector<std::uint16_t> station;  ///< index into `stations` of the scanner that saw it
   std::vector<Field> fields;           ///< those that were asked for (ReadRequest), and what stands in for colours
   std::vector<std::array<std::uint32_t, 3>> triangle; ///< faces, where the file has any; indices into `position`
   std::vector<Eigen::Vector3d> stations;              ///< positions of scanners; not an attribute of points
+  bool normals_unsigned = false; ///< `normal` tells the plane of the surface, and either side of it
 
   std::size_t size() const { return position.size(); }
 };

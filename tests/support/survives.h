@@ -18,7 +18,7 @@ inline bool survives(PointCloud (*read)(const std::string&, const ReadRequest&, 
     // Memory is asked for by counts that were checked.
     REQUIRE(static_cast<double>(cloud.position.capacity()) * bytes_each <= static_cast<double>(file_size + 1));
     for (const std::size_t length :
-         {cloud.normal.size(), cloud.colour.size(), cloud.radius.size(), cloud.station.size()})
+         {cloud.normal.size(), cloud.colour.size(), cloud.radius.size(), cloud.opacity.size(), cloud.station.size()})
       REQUIRE((length == 0 || length == cloud.size()));
     for (const Field& field : cloud.fields)
       REQUIRE(field.values.size() == cloud.size());
@@ -26,6 +26,10 @@ inline bool survives(PointCloud (*read)(const std::string&, const ReadRequest&, 
       REQUIRE(station < cloud.stations.size());
     REQUIRE(cloud.size() > 0);
     REQUIRE(report.points_in_file == cloud.size());
+    // As errors are, what is told is fit for a terminal.
+    for (const std::vector<std::string>& texts : {report.warnings, report.notes})
+      for (const std::string& text : texts)
+        REQUIRE(std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7f; }));
     return true;
   } catch (const Error& error) {
     const std::string text = error.what();

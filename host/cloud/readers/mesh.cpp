@@ -176,4 +176,9 @@ PointCloud sample_mesh(const std::string& path, double spacing, CloudReport& rep
   return cloud;
 }
 
+bool has_mesh_extension(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return !extension.empty() && Assimp::Importer().IsExtensionSupported(extension);
+}
+
 } // namespace pointgi

@@ -16,4 +16,7 @@ namespace pointgi {
 /// finite, or so small that more than 100 million points would result.
 PointCloud sample_mesh(const std::string& path, double spacing, CloudReport& report);
 
+/// Whether assimp reads files that are named so.
+bool has_mesh_extension(const std::string& path);
+
 } // namespace pointgi

@@ -14,7 +14,6 @@ namespace pointgi {
 namespace {
 
 constexpr std::size_t grain = 1 << 16;
-constexpr float harmonic_constant = 0.28209479f; // of degree 0: 1 / (2 sqrt(pi))
 
 /// Red, green and blue, 0..255, of 0x00RRGGBB. The bits of a float that way are a tiny number, far below 1, or with
 /// something in the upper byte a huge or negative one; a float from 1 to 2^24 holds the integer itself.
@@ -104,6 +103,7 @@ void PointSink::finish_normals(CloudReport& report) {
   });
   if (cloud_.normal.empty() || given > 0) return;
   cloud_.normal = {};
+  if (plan_.has(slot_harmonic)) return; // zeros stand there by custom
   report.notes.push_back("the file's normals are all zero or not finite: it is taken as one without normals");
 }
 
@@ -116,9 +116,7 @@ PointCloud PointSink::finish(CloudReport& report) {
     scale_colours({plan_.fields[field_of_[slot_colour]].type, plan_.fields[field_of_[slot_colour + 1]].type,
                    plan_.fields[field_of_[slot_colour + 2]].type},
                   cloud_.colour, report);
-  else
-    for (const Eigen::Vector3f& harmonic : gaussians_.harmonic)
-      cloud_.colour.push_back((0.5f + harmonic_constant * harmonic.array()).max(0.0f).min(1.0f));
+  if (plan_.has(slot_harmonic)) discs_from_gaussians(gaussians_, cloud_, report);
   std::array<bool, 3> is_float32{};
   for (std::size_t k = 0; k < 3; ++k)
     is_float32[k] = plan_.fields[field_of_[slot_position + k]].type == FieldType::f32;

@@ -2,12 +2,15 @@
 #include "host/cloud/input_file.h"
 #include "host/cloud/readers/e57_file.h"
 #include "host/cloud/readers/e57_read.h"
+#include "host/cloud/readers/gaussian_files.h"
 #include "host/cloud/readers/las_header.h"
 #include "host/cloud/readers/las_read.h"
 #include "host/cloud/readers/mesh.h"
 #include "host/cloud/readers/pcd_header.h"
 #include "host/cloud/readers/pcd_read.h"
 #include "host/cloud/readers/ply.h"
+#include "host/cloud/readers/ptx.h"
+#include "host/cloud/readers/text.h"
 #include "host/error.h"
 #include <algorithm>
 #include <string_view>
@@ -21,7 +24,18 @@ bool begins_with(const char* data, std::size_t size, std::string_view magic) {
 }
 
 bool is_ply(const char* data, std::size_t size) {
-  return begins_with(data, size, "ply\n") || begins_with(data, size, "ply\r");
+  return (begins_with(data, size, "ply\n") || begins_with(data, size, "ply\r")) &&
+         !recognises_compressed_ply(data, size);
+}
+
+bool is_packed(const char* data, std::size_t size) {
+  using namespace std::string_view_literals;
+  for (const std::string_view magic : {"\x1f\x8b\x08"sv, "BZh"sv,
+                                       "\xfd"
+                                       "7zXZ\0"sv,
+                                       "\x28\xb5\x2f\xfd"sv, "PK\3\4"sv, "7z\xbc\xaf\x27\x1c"sv})
+    if (begins_with(data, size, magic)) return true;
+  return false;
 }
 
 const char* const export_it = "export it as E57, LAS or PLY with the program that wrote it";
@@ -46,28 +60,33 @@ const CloudReader* reader_of(const std::string& path) {
     if (named) by_extension = &reader;
     if (recognised && by_content == nullptr) by_content = &reader;
   }
-  return by_content != nullptr ? by_content : by_extension;
+  // Some meshes are packed files, which the mesh library unpacks.
+  const bool may_be_mesh = by_extension == nullptr && has_mesh_extension(path);
+  if (by_content != nullptr && !(may_be_mesh && by_content->read == nullptr)) return by_content;
+  return by_extension;
 }
 
 } // namespace
 
 const std::vector<CloudReader>& cloud_readers() {
   static const std::vector<CloudReader> readers{
+      {"compressed PLY of Gaussians", {".compressed.ply"}, recognises_compressed_ply, read_compressed_ply},
       {"PLY", {".ply"}, is_ply, read_ply},
       {"LAS", {".las"}, is_las, read_las},
       {"LAZ", {".laz"}, is_laz, read_las},
       {"E57", {".e57"}, is_e57, read_e57},
       {"PCD", {".pcd"}, is_pcd, read_pcd},
-      {"PTS", {".pts"}, nullptr, nullptr},
-      {"PTX", {".ptx"}, nullptr, nullptr},
-      {"XYZ", {".xyz"}, nullptr, nullptr},
+      {"PTX", {".ptx"}, recognises_ptx, read_ptx},
+      {"splat", {".splat"}, nullptr, read_splat},
+      {"SPZ", {".spz"}, recognises_spz, read_spz},
+      {"text", {".xyz", ".txt", ".csv", ".asc", ".pts", ".xyzrgb", ".xyzn"}, recognises_text, read_text},
       // Only the programs that wrote these know them; the mesh library's answer would only puzzle.
       {"a project of ReCap", {".rcp", ".rcs"}, nullptr, nullptr, export_it},
       {"a scan of FARO", {".fls", ".fws"}, nullptr, nullptr, export_it},
       {"a scan of Z+F", {".zfs"}, nullptr, nullptr, export_it},
       {"a packed file",
        {".gz", ".bz2", ".xz", ".zst", ".zip", ".7z", ".tar", ".tgz"},
-       nullptr,
+       is_packed,
        nullptr,
        "unpack it first"},
   };

@@ -1,6 +1,7 @@
 /// Which file is read by whom.
 #include "host/cloud/readers/readers.h"
 #include "host/error.h"
+#include "tests/support/gaussian_bytes.h"
 #include "tests/support/laz_bytes.h"
 #include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
@@ -63,4 +64,29 @@ TEST_CASE("what a file holds decides where its name says something else", "[read
   CloudReport report;
   CHECK_THROWS_WITH(read_cloud(folder.write("b.ply", "ASTM-E57 and more"), {}, report),
                     Contains("the file ends within its header"));
+}
+
+TEST_CASE("text, grids, Gaussians and packed files are told apart by what they hold", "[readers]") {
+  const TemporaryFolder folder;
+  const auto format_of = [&](const char* name, const std::string& bytes) {
+    CloudReport report;
+    read_cloud(folder.write(name, bytes), {}, report);
+    return report.format;
+  };
+  const std::string grid = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 0.5\n";
+  const std::vector<TestGaussian> gaussians = some_gaussians(3);
+  for (const char* name : {"a.txt", "a.ptx", "a", "a.dat"})
+    CHECK(format_of(name, grid) == "PTX");
+  for (const char* name : {"b.XYZ", "b.csv", "b.asc", "b", "b.dat", "b.ply"})
+    CHECK(format_of(name, "1 2 3\n4 5 6\n") == "text");
+  CHECK(format_of("c.pts", "1\n1 2 3\n") == "PTS");
+  for (const char* name : {"d.spz", "d", "d.ply"})
+    CHECK(format_of(name, spz_bytes(gaussians, 3, 0)) == "SPZ version 3");
+  for (const char* name : {"e.compressed.ply", "e.ply", "e"})
+    CHECK(format_of(name, compressed_ply_bytes(gaussians, true, false)).find("compressed Gaussians") == 0);
+  CHECK(format_of("f.SPLAT", splat_bytes(gaussians)) == "splat");
+  // A mesh is one, numbers or not.
+  CHECK(format_of("g.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").find("mesh") == 0);
+  for (const char* name : {"h", "h.ply", "h.xyz"})
+    CHECK_THROWS_WITH(format_of(name, gzipped("1 2 3\n")), Contains("a packed file") && Contains("unpack it first"));
 }
