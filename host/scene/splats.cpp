@@ -81,16 +81,19 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 } // namespace
 
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  PointCloud cloud = settings.points
-                         ? *settings.points
-                         : read_cloud(settings.file, {settings.spacing / settings.scale, {}, false}, report);
+  PointCloud cloud =
+      settings.points ? *settings.points
+                      : read_cloud(settings.file,
+                                   {settings.spacing / settings.scale, fields_of(settings.selection), false}, report);
   if (settings.points) report.format = "arrays in memory";
-  std::optional<Vector3d> viewpoint = settings.viewpoint;
-  if (report.placement) {
-    std::transform(cloud.position.begin(), cloud.position.end(), cloud.position.begin(), *report.placement);
-    if (viewpoint) viewpoint = (*report.placement)(*viewpoint);
-  }
   try {
+    if (report.points_in_file == 0) report.points_in_file = cloud.size();
+    select_points(cloud, settings.selection, report); // in the file's own coordinates
+    std::optional<Vector3d> viewpoint = settings.viewpoint;
+    if (report.placement) {
+      std::transform(cloud.position.begin(), cloud.position.end(), cloud.position.begin(), *report.placement);
+      if (viewpoint) viewpoint = (*report.placement)(*viewpoint);
+    }
     complete_cloud(cloud, {settings.normals, settings.radii, viewpoint}, report);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw; // it is no fault of the cloud

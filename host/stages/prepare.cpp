@@ -23,7 +23,7 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
     log_warning("{}", warning);
   for (std::size_t i = 0; i < splats.reports.size(); ++i) {
     const CloudReport& r = splats.reports[i];
-    log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
+    log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_left_out - r.points_dropped,
              r.normals_from, r.radii_from);
     for (const std::string& note : r.notes)
       log_info("{}: {}", scene.clouds[i].file, note);
