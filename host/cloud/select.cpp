@@ -13,23 +13,15 @@ namespace {
 
 using ValueOf = std::function<double(std::size_t point)>;
 
-/// A field's name without case, and without what CloudCompare puts before the names of scalar fields.
-std::string plain(std::string name) {
-  for (char& c : name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  constexpr const char* prefix = "scalar_";
-  return name.rfind(prefix, 0) == 0 ? name.substr(7) : name;
-}
-
 /// The names that mean the same field, the given one first.
 std::vector<std::string> names_of(const std::string& field) {
-  const std::string name = plain(field);
+  const std::string name = lookup_name(field);
   if (name == "classification" || name == "class") return {field, name == "class" ? "classification" : "class"};
   return {field};
 }
 
 bool is_coordinate(const std::string& field) {
-  const std::string name = plain(field);
+  const std::string name = lookup_name(field);
   return name == "x" || name == "y" || name == "z";
 }
 
@@ -52,18 +44,18 @@ ValueOf attribute(const PointCloud& cloud, const std::string& name) {
 std::string list_of_fields(const CloudReport& report) {
   constexpr std::size_t most = 20;
   std::string list;
-  for (std::size_t i = 0; i < std::min(most, report.properties.size()); ++i)
-    list += (list.empty() ? "" : ", ") + printable(report.properties[i].property);
-  if (report.properties.size() > most) list += ", ...";
+  for (std::size_t i = 0; i < std::min(most, report.fields.size()); ++i)
+    list += (list.empty() ? "" : ", ") + printable(report.fields[i]);
+  if (report.fields.size() > most) list += ", ...";
   return list;
 }
 
 ValueOf values_of(const PointCloud& cloud, const FieldCondition& condition, const CloudReport& report) {
-  if (is_coordinate(condition.field)) return attribute(cloud, plain(condition.field));
+  if (is_coordinate(condition.field)) return attribute(cloud, lookup_name(condition.field));
   for (const std::string& name : names_of(condition.field))
     for (const Field& field : cloud.fields)
-      if (plain(field.info.name) == plain(name)) return [&field](std::size_t i) { return field.values[i]; };
-  if (ValueOf own = attribute(cloud, plain(condition.field))) return own;
+      if (lookup_name(field.info.name) == lookup_name(name)) return [&field](std::size_t i) { return field.values[i]; };
+  if (ValueOf own = attribute(cloud, lookup_name(condition.field))) return own;
   const std::string list = list_of_fields(report);
   throw Error(ErrorKind::input,
               "keep: the cloud has no field " + quoted_bytes(condition.field) +

@@ -42,11 +42,7 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
 }
 
 void place(PointCloud& cloud, const CloudSettings& settings) {
-  const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
-  const Eigen::Matrix3d rotation =
-      (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
-       Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
-          .toRotationMatrix();
+  const Eigen::Matrix3d rotation = rotation_of(settings);
   const bool turned = !settings.rotate_deg.isZero();
   const Eigen::Matrix3f rotation_f = rotation.cast<float>();
   const auto scale = static_cast<float>(settings.scale);
@@ -69,6 +65,9 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   if (all.cloud.size() == 0) { // the common scene, one cloud, is not copied
     all.cloud = std::move(part);
     all.cloud.triangle = {};
+    all.cloud.fields = {};
+    all.record = std::move(all.cloud.record);
+    all.cloud.record = {};
     return;
   }
   join(all.cloud.position, part.position);
@@ -80,12 +79,20 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 
 } // namespace
 
+Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
+  const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
+  return (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
   PointCloud cloud =
       settings.points ? *settings.points
                       : read_cloud(settings.file,
                                    {settings.spacing / settings.scale, fields_of(settings.selection), false}, report);
   if (settings.points) report.format = "arrays in memory";
+  report.sampled = !cloud.area.empty();
   try {
     if (report.points_in_file == 0) report.points_in_file = cloud.size();
     select_points(cloud, settings.selection, report); // in the file's own coordinates
