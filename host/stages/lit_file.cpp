@@ -181,7 +181,8 @@ void write_lit_ply(const std::string& output, const Scene& scene, const Prepared
   if (is_ply(settings.file)) return write_ply_again(output, settings.file, results);
   CloudReport ignored;
   const PointCloud cloud = read_cloud(settings.file, {0.0, {}, true}, ignored);
-  write_with_results(output, cloud, fields_as_columns(cloud), results);
+  // A format without names of fields gives attributes alone.
+  write_with_results(output, cloud, cloud.fields.empty() ? attributes_of(cloud) : fields_as_columns(cloud), results);
 }
 
 } // namespace pointgi

@@ -273,7 +273,8 @@ void write_ply_with_columns(const std::string& source, const std::string& output
 std::vector<std::string> ply_vertex_properties(const std::string& path) {
   std::vector<std::string> names;
   const std::vector<PointColumn> none;
-  for (const PlyProperty& property : Rewriter(path, none).vertex().properties)
+  const Rewriter file(path, none);
+  for (const PlyProperty& property : file.vertex().properties)
     if (!property.is_list) names.push_back(property.name);
   return names;
 }
