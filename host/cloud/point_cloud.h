@@ -77,7 +77,7 @@ struct CloudReport {
   std::size_t points_left_out = 0; ///< by the scene's keep, crop, clip and voxel
   std::size_t points_dropped = 0;  ///< not finite, or with radius <= 0
   std::size_t triangles = 0;
-  bool sampled = false; ///< the points were laid on a mesh: no file has them
+  bool sampled = false;     ///< the points were laid on a mesh: no file has them
   std::string normals_from; ///< "file", "file, flipped", "faces", "estimated (…)"
   std::string radii_from;   ///< "file", "estimated (…)"
   std::string areas_from;
