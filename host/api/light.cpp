@@ -1,6 +1,7 @@
 #include "host/api/parts.h"
 #include "host/error.h"
 #include "host/run.h"
+#include "host/stages/lit_file.h"
 #include "host/stages/view_warnings.h"
 
 namespace pointgi::api {
@@ -10,7 +11,25 @@ IndirectRequest Light::Parts::request() const {
   return {ready.choice.variant, prepared->scene, ready.frame, ready.lighting, prepared->points(), options.path_tracing};
 }
 
-LitCloud Light::Parts::lit_cloud(double exposure) {
+const std::vector<float>& Light::Parts::sky_of_points() {
+  constexpr int usual_light_samples = 64, rays_a_light_sample = 4; // a share scatters more than a sum of lights does
+  if (!sky.empty()) return sky;
+  Prepared::Parts& from = *prepared;
+  StageLog& stages = from.context->stages;
+  stages.start("sky");
+  const int samples = from.scene.radiosity.light_samples.value_or(usual_light_samples);
+  sky = pointgi::sky_of_points(from.context->session, from.ready.on_device, request(),
+                               static_cast<unsigned>(rays_a_light_sample * samples));
+  stages.finish(sky.size(), "points");
+  return sky;
+}
+
+LitCloud Light::Parts::lit_cloud(const LitFileOptions& with) {
+  if (with.sky && !prepared->ready.lighting.has_light()) {
+    LitCloud points = bare_points(request());
+    points.columns.push_back({"scalar_sky", sky_of_points()});
+    return points;
+  }
   if (options.path_tracing)
     throw Error(ErrorKind::usage, "light of path tracing holds no radiosity; solve the light without path_tracing");
   Prepared::Parts& from = *prepared;
@@ -20,7 +39,9 @@ LitCloud Light::Parts::lit_cloud(double exposure) {
     indirect.direct = direct_light_of_points(from.context->session, from.ready.on_device, request());
   }
   if (!warned_of_dark) warned_of_dark = warn_of_unlit(from.scene, from.ready, indirect.direct, indirect.from_surfaces);
-  return pointgi::lit_cloud(request(), indirect, exposure);
+  LitCloud lit = pointgi::lit_cloud(request(), indirect, with.exposure);
+  if (with.sky) lit.columns.push_back({"scalar_sky", sky_of_points()});
+  return lit;
 }
 
 Light::Light(const Prepared& prepared, const LightOptions& options, const RunControl& run) : parts_(new Parts) {
@@ -46,17 +67,22 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
 
 std::vector<float> Light::radiosity(const RunControl& run) const {
   const RunScope scope(run);
-  const LitCloud lit = parts_->lit_cloud(0.0);
+  const LitCloud lit = parts_->lit_cloud({});
   std::vector<float> radiosity(3 * lit.cloud.size());
   for (std::size_t i = 0; i < radiosity.size(); ++i)
     radiosity[i] = lit.columns[i % 3].values[i / 3];
   return radiosity;
 }
 
-void Light::write_ply(const std::string& file, double exposure, const RunControl& run) const {
+std::vector<float> Light::sky(const RunControl& run) const {
   const RunScope scope(run);
-  const LitCloud lit = parts_->lit_cloud(exposure);
-  pointgi::write_ply(file, lit.cloud, lit.columns);
+  return parts_->sky_of_points();
+}
+
+void Light::write_ply(const std::string& file, const LitFileOptions& with, const RunControl& run) const {
+  const RunScope scope(run);
+  const LitCloud lit = parts_->lit_cloud(with);
+  write_lit_ply(file, parts_->prepared->scene, parts_->prepared->ready, lit);
 }
 
 } // namespace pointgi::api

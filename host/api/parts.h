@@ -40,10 +40,13 @@ struct Light::Parts {
   SceneLight light;
   Buffer<cl_float4> irradiance; ///< that pictures interpolate; empty where no surface sends any light
   bool warned_of_dark = false;  ///< the log knows why pictures will be black
+  std::vector<float> sky;       ///< of the points; empty: not asked for yet
 
   IndirectRequest request() const;
   /// Finds direct light where solving did not need it; the log hears why, and where all is dark.
-  LitCloud lit_cloud(double exposure);
+  LitCloud lit_cloud(const LitFileOptions& options);
+  /// The stage `sky`, once.
+  const std::vector<float>& sky_of_points();
 };
 
 /// A film before its rows: what is rendered, and how the file describes it. Throws as Film does.

@@ -49,6 +49,12 @@ struct LightOptions {
   bool path_tracing = false;
 };
 
+/// What a lit cloud's file shows besides the points.
+struct LitFileOptions {
+  double exposure = 0.0; ///< brightens the colours, in stops
+  bool sky = false;      ///< scalar_sky: as of Light::sky(); a scene without any light then has nothing else
+};
+
 /// The solved light of a prepared scene. It does not depend on a camera: any number of films may be made by it.
 class Light {
 public:
@@ -60,9 +66,15 @@ public:
   /// Throws Error(device), and Error(usage) for light that was not solved (path_tracing).
   std::vector<float> radiosity(const RunControl& run = {}) const;
 
-  /// The points with their normals, radii, radiosity and colours as a PLY file, as `pointgi bake` writes it. `exposure`
-  /// brightens the colours, in stops. Throws as radiosity(), and Error(output).
-  void write_ply(const std::string& file, double exposure = 0.0, const RunControl& run = {}) const;
+  /// [size], 0 to 1, in the order of Prepared::positions(): the share of the sky that the front of each point sees, its
+  /// directions weighted by their cosine to the normal; whatever lights there are. Of four times as many rays a point
+  /// as radiosity.light_samples. Throws Error(device).
+  std::vector<float> sky(const RunControl& run = {}) const;
+
+  /// The points with their normals, radii, radiosity and colours as a PLY file, as `pointgi bake` writes it: a scene of
+  /// one cloud and nothing else gives back the cloud's own points, in their order and with all that they had, and the
+  /// results beside them. Throws as radiosity() and sky(), and Error(output).
+  void write_ply(const std::string& file, const LitFileOptions& options = {}, const RunControl& run = {}) const;
 
   struct Parts; ///< for the library itself
   const std::shared_ptr<Parts>& parts() const { return parts_; }

@@ -44,8 +44,9 @@ ExitCode run_bake(const BakeOptions& options) {
   const api::Light light(prepared, {false, false}, run.control());
   stages.skip("photon", specular ? "a lit cloud holds no caustics" : "no specular material");
   stages.skip("render", "a lit cloud is no picture: it has no camera");
+  if (options.sky) light.sky(run.control());
   stages.start("bake");
-  light.write_ply(options.output, description.render.exposure, run.control());
+  light.write_ply(options.output, {description.render.exposure, options.sky}, run.control());
   stages.finish(prepared.size(), "points");
   if (!options.stats_file.empty()) {
     Stats stats = stats_of(*light.parts());

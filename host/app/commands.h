@@ -33,7 +33,9 @@ struct RenderOptions : LightOptions {
   std::string dump_folder;
 };
 
-struct BakeOptions : LightOptions {};
+struct BakeOptions : LightOptions {
+  bool sky = false; ///< the share of the sky that each point sees, too
+};
 
 struct ProfileOptions {
   std::string input;  ///< scene.toml or cloud; not needed to list or write programs

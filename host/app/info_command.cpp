@@ -17,7 +17,9 @@ namespace {
 void print_report(const std::string& file, const CloudReport& report) {
   std::printf("%s\n", file.c_str());
   std::printf("  format      %s\n", report.format.c_str());
-  std::printf("  points      %zu in the file, %zu dropped\n", report.points_in_file, report.points_dropped);
+  std::printf("  points      %zu in the file, ", report.points_in_file);
+  if (report.points_left_out > 0) std::printf("%zu left out, ", report.points_left_out);
+  std::printf("%zu dropped\n", report.points_dropped);
   std::printf("  triangles   %zu\n", report.triangles);
   std::printf("  normals     %s\n", report.normals_from.c_str());
   std::printf("  radii       %s\n", report.radii_from.c_str());

@@ -154,6 +154,9 @@ int run(int argc, char** argv) {
                     "brightens the colours by this many stops (default 0); the radiosity stays as it is",
                     "draft: four times the scene's radiosity.epsilon; normal; high: half of it")
       ->required();
+  bake_command->add_flag("--sky", bake.sky,
+                         "add scalar_sky, the share of the sky that each point sees (ambient occlusion); of a scene "
+                         "without light nothing else is computed");
 
   ProfileOptions profile;
   CLI::App* profile_command =

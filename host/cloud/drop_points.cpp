@@ -1,14 +1,12 @@
 #include "host/cloud/drop_points.h"
+#include "host/cloud/keep_points.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace pointgi {
 
 namespace {
-
-constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
 
 // A root cube a thousand times the object's size still leaves it 2000 of the finest cells on a side; beyond that the
 // object itself would be lost in rounding.
@@ -18,41 +16,6 @@ constexpr std::size_t least_points = 1000; // fewer do not tell what the rest is
 
 bool positive(float value) {
   return std::isnormal(value) && value > 0;
-}
-
-template <class T>
-void keep_renumbered(std::vector<T>& values, const std::vector<std::uint32_t>& number, std::size_t kept) {
-  if (values.empty()) return;
-  for (std::size_t i = 0; i < number.size(); ++i)
-    if (number[i] != gone) values[number[i]] = values[i];
-  values.resize(kept);
-}
-
-/// Removes the points that `keep(index)` does not want, and returns how many went.
-template <class Keep>
-std::size_t keep_points(PointCloud& cloud, Keep keep) {
-  const std::size_t n = cloud.size();
-  std::vector<std::uint32_t> number(n);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    number[i] = keep(i) ? static_cast<std::uint32_t>(kept++) : gone;
-
-  const auto broken = [&](std::array<std::uint32_t, 3>& face) {
-    for (std::uint32_t& corner : face) {
-      corner = corner < n ? number[corner] : gone;
-      if (corner == gone) return true;
-    }
-    return false;
-  };
-  cloud.triangle.erase(std::remove_if(cloud.triangle.begin(), cloud.triangle.end(), broken), cloud.triangle.end());
-  if (kept == n) return 0;
-  keep_renumbered(cloud.position, number, kept);
-  keep_renumbered(cloud.normal, number, kept);
-  keep_renumbered(cloud.colour, number, kept);
-  keep_renumbered(cloud.radius, number, kept);
-  keep_renumbered(cloud.area, number, kept);
-  keep_renumbered(cloud.opacity, number, kept);
-  return n - kept;
 }
 
 } // namespace

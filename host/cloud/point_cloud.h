@@ -74,8 +74,10 @@ struct CloudReport {
   std::vector<std::string> warnings;   ///< full sentences, each with its remedy
   std::vector<std::string> notes;      ///< full sentences of what was chosen, logged as information
   std::size_t points_in_file = 0;
-  std::size_t points_dropped = 0; ///< not finite, or with radius <= 0
+  std::size_t points_left_out = 0; ///< by the scene's keep, crop, clip and voxel
+  std::size_t points_dropped = 0;  ///< not finite, or with radius <= 0
   std::size_t triangles = 0;
+  bool sampled = false;     ///< the points were laid on a mesh: no file has them
   std::string normals_from; ///< "file", "file, flipped", "faces", "estimated (…)"
   std::string radii_from;   ///< "file", "estimated (…)"
   std::string areas_from;

@@ -39,6 +39,7 @@ inline constexpr IntegerRange octree_depth{0, 21};
 
 // Lengths are squared in float on the device: 1e18 and 1e-18 leave areas of 1e36 and 1e-36, inside what float holds.
 inline constexpr NumberRange coordinate{-1e18, 1e18, false, false, "from -1e18 to 1e18"};
+inline constexpr NumberRange field_value{-1.7e308, 1.7e308, false, false, "that a double holds"};
 inline constexpr NumberRange length{1e-18, 1e18, false, false, "> 0 (1e-18 to 1e18)"};
 inline constexpr NumberRange scale{1e-18, 1e18, false, false, "> 0 (1e-18 to 1e18)"};
 inline constexpr NumberRange angle{-1e6, 1e6, false, false, "of degrees from -1e6 to 1e6"};

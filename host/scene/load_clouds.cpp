@@ -62,8 +62,8 @@ void load_radius(const TableReader& table, CloudSettings& cloud) {
 
 CloudSettings load_cloud(const TableReader& table, const MaterialNames& materials, const std::string& scene_file,
                          const CloudsInMemory& in_memory) {
-  table.allow_only(
-      {"file", "material", "scale", "rotate_deg", "translate", "radius", "normals", "viewpoint", "spacing"});
+  table.allow_only({"file", "material", "scale", "rotate_deg", "translate", "radius", "normals", "viewpoint", "spacing",
+                    "keep", "crop", "clip", "voxel"});
   CloudSettings cloud;
   cloud.place = table.place();
   const auto given = in_memory.find(table.text("file").value_or(""));
@@ -78,6 +78,7 @@ CloudSettings load_cloud(const TableReader& table, const MaterialNames& material
     cloud.normals = normals_called(*normals);
   cloud.viewpoint = table.vector3("viewpoint", limits::coordinate);
   if (const auto spacing = table.number("spacing", limits::length)) cloud.spacing = *spacing;
+  cloud.selection = load_selection(table);
   return cloud;
 }
 

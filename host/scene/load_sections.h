@@ -43,6 +43,9 @@ private:
 std::vector<CloudSettings> load_clouds(const TableReader& root, const MaterialNames& materials,
                                        const std::string& scene_file, const CloudsInMemory& in_memory);
 
+/// `keep`, `crop`, `clip` and `voxel` of a [[cloud]]. Refuses boxes without an inside and normals of length 0.
+Selection load_selection(const TableReader& cloud);
+
 std::vector<ShapeSettings> load_shapes(const TableReader& root, const MaterialNames& materials);
 /// Appends to `warnings` where a light gives none.
 std::vector<LightSettings> load_lights(const TableReader& root, UpAxis up, std::vector<std::string>& warnings);

@@ -51,14 +51,14 @@ struct Sum {
 
 } // namespace
 
-std::size_t merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id) {
+std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id) {
   std::vector<std::uint32_t> order(splats.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return before(splats[a], splats[b]) || (!before(splats[b], splats[a]) && a < b);
   });
   std::vector<bool> gone(splats.size(), false);
-  std::size_t merged = 0;
+  std::vector<MergedSplat> merged;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     for (end = begin + 1; end < order.size() && !before(splats[order[begin]], splats[order[end]]);)
       ++end;
@@ -73,7 +73,7 @@ std::size_t merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32
         side = sides.end() - 1;
       } else {
         gone[order[k]] = true;
-        ++merged;
+        merged.push_back({id[order[k]], id[side->first]});
       }
       side->second.add(s);
     }

@@ -1,6 +1,7 @@
 #pragma once
 /// The scene as the file describes it, in world units and doubles: nothing loaded, nothing sampled yet.
 #include "host/cloud/complete.h"
+#include "host/cloud/select.h"
 #include "octree/build/curve.h"
 #include "shared/render_types.h"
 #include <Eigen/Core>
@@ -91,6 +92,7 @@ struct CloudSettings {
   RadiusSource radii = RadiusSource::automatic;
   std::optional<double> radius;      ///< one radius for all points, world units after scaling
   std::optional<Vector3d> viewpoint; ///< sensor position in the file's coordinates
+  Selection selection;               ///< which of the file's points are wanted
   double spacing = 0.0;              ///< for meshes: distance of the sampled splats, world units; 0 = chosen
   SourcePlace place;
   std::shared_ptr<const PointCloud> points; ///< in memory, called `file`; null: in that file

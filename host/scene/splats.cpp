@@ -41,13 +41,6 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
   cloud.colour.assign(cloud.size(), albedo.cast<float>().cwiseMin(most));
 }
 
-Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
-  const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
-  return (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
-          Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
 void place(PointCloud& cloud, const CloudSettings& settings, const Eigen::Matrix3d& rotation) {
   const bool turned = !settings.rotate_deg.isZero();
   const Eigen::Matrix3f rotation_f = rotation.cast<float>();
@@ -66,8 +59,10 @@ void place(PointCloud& cloud, const CloudSettings& settings, const Eigen::Matrix
 
 /// What the report says of places and directions, too.
 void place(CloudReport& report, const CloudSettings& settings, const Eigen::Matrix3d& rotation) {
-  for (Vector3d& station : report.stations)
+  for (Vector3d& station : report.stations) {
+    if (report.placement) station = (*report.placement)(station);
     station = rotation * (settings.scale * station) + settings.translate;
+  }
   if (report.up) report.up = rotation * *report.up;
 }
 
@@ -78,6 +73,9 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   if (all.cloud.size() == 0) { // the common scene, one cloud, is not copied
     all.cloud = std::move(part);
     all.cloud.triangle = {};
+    all.cloud.fields = {};
+    all.record = std::move(all.cloud.record);
+    all.cloud.record = {};
     return;
   }
   join(all.cloud.position, part.position);
@@ -94,17 +92,28 @@ void append_cloud(WorldSplats& splats, PointCloud&& cloud, const MaterialSetting
   append(splats, std::move(cloud), number);
 }
 
+Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
+  const Vector3d angle = settings.rotate_deg * (3.14159265358979323846 / 180.0);
+  return (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
 PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  PointCloud cloud = settings.points
-                         ? *settings.points
-                         : read_cloud(settings.file, {settings.spacing / settings.scale, {}, false}, report);
+  PointCloud cloud =
+      settings.points ? *settings.points
+                      : read_cloud(settings.file,
+                                   {settings.spacing / settings.scale, fields_of(settings.selection), false}, report);
   if (settings.points) report.format = "arrays in memory";
-  std::optional<Vector3d> viewpoint = settings.viewpoint;
-  if (report.placement) {
-    std::transform(cloud.position.begin(), cloud.position.end(), cloud.position.begin(), *report.placement);
-    if (viewpoint) viewpoint = (*report.placement)(*viewpoint);
-  }
+  report.sampled = !cloud.area.empty();
   try {
+    if (report.points_in_file == 0) report.points_in_file = cloud.size();
+    select_points(cloud, settings.selection, report); // in the file's own coordinates
+    std::optional<Vector3d> viewpoint = settings.viewpoint;
+    if (report.placement) {
+      std::transform(cloud.position.begin(), cloud.position.end(), cloud.position.begin(), *report.placement);
+      if (viewpoint) viewpoint = (*report.placement)(*viewpoint);
+    }
     complete_cloud(cloud, {settings.normals, settings.radii, viewpoint}, report);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw; // it is no fault of the cloud

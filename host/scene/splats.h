@@ -12,6 +12,7 @@ struct WorldSplats {
   PointCloud cloud;
   std::vector<std::uint32_t> material; ///< index into Scene::materials, one a point
   std::vector<CloudReport> reports;    ///< one a [[cloud]], in the scene's order
+  std::vector<std::uint32_t> record;   ///< of the first cloud's points: their numbers in its file; empty: their own
   std::vector<std::uint32_t> first;    ///< point of each object: of the clouds, then the shapes, in the scene's order
 };
 
@@ -23,6 +24,9 @@ WorldSplats load_splats(const Scene& scene);
 
 /// One more object: a complete cloud in world units, of the scene's material of that `number`.
 void append_cloud(WorldSplats& splats, PointCloud&& cloud, const MaterialSettings& material, std::uint32_t number);
+
+/// How a cloud is turned.
+Eigen::Matrix3d rotation_of(const CloudSettings& settings);
 
 /// The device's points in the frame's cube.
 std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame);

@@ -56,6 +56,13 @@ SourcePlace TableReader::place(const char* key) const {
   return node != nullptr ? place_of(node->source(), *file_) : place();
 }
 
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::string> keys;
+  for (auto&& [key, node] : *table_)
+    keys.emplace_back(key.str());
+  return keys;
+}
+
 void TableReader::fail(const char* key, const std::string& what) const {
   throw Error(ErrorKind::input, place(key).text() + ": " + path_to(key) + ": " + what);
 }
@@ -159,6 +166,19 @@ std::optional<Vector3d> TableReader::vector3(const char* key, const limits::Numb
   return vector;
 }
 
+std::optional<std::vector<double>> TableReader::numbers(const char* key, const limits::NumberRange& range) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* array = node->as_array();
+  std::vector<double> values;
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
+    if (const std::optional<double> value = as_number((*array)[i]); value && inside(*value, range))
+      values.push_back(*value);
+  if (array == nullptr || values.empty() || values.size() != array->size())
+    unexpected(key, std::string("one number or more ") + range.words);
+  return values;
+}
+
 std::optional<bool> TableReader::boolean(const char* key) const {
   const toml::node* node = table_->get(key);
   if (node == nullptr) return std::nullopt;
@@ -203,6 +223,13 @@ Vector3d TableReader::need_vector3(const char* key, const limits::NumberRange& r
 std::string TableReader::need_text(const char* key, const char* what) const {
   if (!has(key)) missing(key, what);
   return *text(key);
+}
+
+std::optional<TableReader> TableReader::inline_table(const char* key, const char* example) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_table()) unexpected(key, std::string("a table, ") + example);
+  return TableReader(*node->as_table(), *file_, path_to(key));
 }
 
 std::optional<TableReader> TableReader::table(const char* key) const {

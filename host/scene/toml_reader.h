@@ -32,6 +32,7 @@ public:
   /// Reads `type`, then refuses keys of no type (the nearest known is named) and keys of another type (it is named).
   std::string typed(const std::vector<std::string>& common, const std::vector<TypedKeys>& types) const;
 
+  std::vector<std::string> keys() const; ///< in the order of their names
   bool has(const char* key) const { return table_->get(key) != nullptr; }
   const toml::node* find(const char* key) const { return table_->get(key); }
   SourcePlace place() const;                ///< of the table
@@ -41,6 +42,7 @@ public:
   std::optional<long long> integer(const char* key, limits::IntegerRange range) const;
   std::optional<double> number(const char* key, const limits::NumberRange& range) const;
   std::optional<Vector3d> vector3(const char* key, const limits::NumberRange& range) const;
+  std::optional<std::vector<double>> numbers(const char* key, const limits::NumberRange& range) const; ///< one or more
   std::optional<bool> boolean(const char* key) const;
   std::optional<std::string> text(const char* key) const;                                          ///< not empty
   std::optional<std::string> choice(const char* key, const std::vector<std::string>& words) const; ///< one of `words`
@@ -52,6 +54,8 @@ public:
 
   std::optional<TableReader> table(const char* key) const; ///< [key]
   std::vector<TableReader> tables(const char* key) const;  ///< [[key]], with paths "key.0", "key.1", ...
+  /// The same where they are written as a value: key = { … }. `example` shows it in the error.
+  std::optional<TableReader> inline_table(const char* key, const char* example) const;
 
   /// Throws Error(input) "place of the key's value: path.key: what".
   [[noreturn]] void fail(const char* key, const std::string& what) const;

@@ -201,6 +201,27 @@ std::vector<float> direct_light_of_points(Session& session, const DevicePools& p
   return direct_light(session, pools, request, true);
 }
 
+std::vector<float> sky_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                 unsigned samples) {
+  const StageWatch watch(session);
+  // An even sky of radiance 1/pi, unblocked, gives an irradiance of 1.
+  DeviceLighting sky;
+  sky.materials = request.lighting.materials;
+  sky.params = request.lighting.params;
+  sky.params.light_sources = sky.params.emitters = 0;
+  std::fill_n(sky.params.environment, 3, 0.318309886f);
+  sky.has_environment = true;
+  const std::size_t points = request.points.size;
+  const std::vector<float> irradiance =
+      session.download(direct_irradiance_of_points(session, pools, request.variant, sky, request.frame.side, points,
+                                                   samples, false, [] { return false; }),
+                       3 * points);
+  std::vector<float> share(points);
+  for (std::size_t p = 0; p < points; ++p)
+    share[p] = std::clamp(irradiance[3 * p], 0.0f, 1.0f); // the sum of the estimates rounds
+  return share;
+}
+
 const RadiosityMethod* radiosity_method_of(const Scene& scene) {
   return radiosity_method(scene.radiosity.method);
 }

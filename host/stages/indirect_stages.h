@@ -61,6 +61,11 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
 /// IndirectLight::direct where no stage of these has found it, because no surface sends any light to another.
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request);
 
+/// [points], 0 to 1: the share of the sky that the front of each point sees, whose directions count by their cosine to
+/// the normal; whatever lights the scene has. Mean of `samples` rays a point.
+std::vector<float> sky_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                 unsigned samples);
+
 /// rho times the sum of irradiances: what each point reflects to all sides, [points x 3] as IndirectLight; 0 of points
 /// that do not exchange light. Irradiances: [points x 3] each, or empty for none.
 std::vector<float> reflected_radiosity(const IndirectRequest& request, const std::vector<View<float>>& irradiances);

@@ -17,14 +17,20 @@ void add_geometry(const Splat& s, const Frame& frame, PointCloud& cloud) {
 
 } // namespace
 
+LitCloud bare_points(const IndirectRequest& scene) {
+  LitCloud points;
+  for (const Splat& s : scene.points)
+    add_geometry(s, scene.frame, points.cloud);
+  return points;
+}
+
 LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, double exposure) {
-  LitCloud lit;
+  LitCloud lit = bare_points(scene);
   lit.columns = {{"scalar_radiosity_r", {}}, {"scalar_radiosity_g", {}}, {"scalar_radiosity_b", {}}};
   const std::vector<float> emitted = emitted_radiosity(scene.lighting, scene.points);
   const double brightness = std::exp2(exposure) / pi;
   for (std::size_t p = 0; p < scene.points.size; ++p) {
     const Splat& s = scene.points[p];
-    add_geometry(s, scene.frame, lit.cloud);
     const bool diffuse = exchanges_light(scene.scene.materials[static_cast<std::size_t>(s.material)]);
     Eigen::Vector3f colour;
     for (std::size_t c = 0; c < 3; ++c) {

@@ -1,7 +1,6 @@
 #include "host/stages/prepare.h"
 #include "host/cloud/input_file.h"
 #include "host/run.h"
-#include "host/scene/merge_coincident.h"
 #include "host/scene/sheet_sides.h"
 #include "host/view/default_light.h"
 #include <numeric>
@@ -23,8 +22,8 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
     log_warning("{}", warning);
   for (std::size_t i = 0; i < splats.reports.size(); ++i) {
     const CloudReport& r = splats.reports[i];
-    log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file, r.points_in_file - r.points_dropped,
-             r.normals_from, r.radii_from);
+    log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file,
+             r.points_in_file - r.points_left_out - r.points_dropped, r.normals_from, r.radii_from);
     for (const std::string& note : r.notes)
       log_info("{}: {}", scene.clouds[i].file, note);
     for (const std::string& warning : r.warnings)
@@ -49,6 +48,8 @@ void choose_view(Scene& scene, WorldSplats& splats, bool bare) {
 
 PlacedSplats load_and_place(Scene& scene, bool bare) {
   WorldSplats world = load_splats(scene);
+  const bool one_file = scene.clouds.size() == 1 && scene.shapes.empty() && !world.reports[0].sampled;
+  const auto file_points = static_cast<std::uint32_t>(world.cloud.size());
   choose_view(scene, world, bare);
   log_reports(scene, world);
   PlacedSplats placed;
@@ -57,8 +58,9 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   placed.first_ids = world.first;
   placed.id.resize(placed.splats.size());
   std::iota(placed.id.begin(), placed.id.end(), 0u);
-  if (const std::size_t merged = merge_coincident(placed.splats, placed.id); merged > 0)
-    log_info("{} points that lie on others were merged with them", merged);
+  std::vector<MergedSplat> merged = merge_coincident(placed.splats, placed.id);
+  if (!merged.empty()) log_info("{} points that lie on others were merged with them", merged.size());
+  if (one_file) placed.file_order = FileOrder{std::move(world.record), file_points, std::move(merged)};
   if (const std::size_t sheets = divide_sheets(scene, placed.splats, placed.id); sheets > 0)
     log_info("{} splats are two-sided: each side is a point of its own", sheets);
   return placed;

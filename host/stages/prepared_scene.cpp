@@ -40,6 +40,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.pools = build_pools(placed.splats, ready.choice.variant);
   placed.splats = {};
   ready.first_ids = placed.first_ids;
+  ready.file_order = std::move(placed.file_order);
   for (const std::uint32_t source : source_of(ready.pools))
     ready.ids.push_back(placed.id[source]);
   ready.on_device = upload(session, ready.pools, ready.choice.variant);

@@ -1,59 +1,13 @@
-#include "host/atomic_file.h"
+#include "host/cloud/readers/byte_stream.h"
 #include "host/cloud/readers/ply.h"
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
 
 namespace pointgi {
 
 namespace {
 
-/// Collects values in the little-endian order of the file and hands them on in large pieces.
-class LittleEndianStream {
-public:
-  explicit LittleEndianStream(AtomicFile& file) : file_(file) { buffer_.reserve(capacity); }
-
-  void text(const std::string& words) { append(words.data(), words.size()); }
-  void put(std::uint8_t value) { append(&value, 1); }
-  void put(std::uint32_t value) {
-    const std::uint8_t bytes[4] = {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8),
-                                   static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 24)};
-    append(bytes, sizeof bytes);
-  }
-  void put(float value) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    put(bits);
-  }
-  void put(double value) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    put(static_cast<std::uint32_t>(bits));
-    put(static_cast<std::uint32_t>(bits >> 32));
-  }
-  void flush() {
-    file_.write(buffer_.data(), buffer_.size());
-    buffer_.clear();
-  }
-
-private:
-  static constexpr std::size_t capacity = 1 << 20;
-
-  void append(const void* data, std::size_t bytes) {
-    if (buffer_.size() + bytes > capacity) flush();
-    const char* from = static_cast<const char*>(data);
-    buffer_.insert(buffer_.end(), from, from + bytes);
-  }
-
-  AtomicFile& file_;
-  std::vector<char> buffer_;
-};
-
 /// A colour channel as the usual byte; what is no number becomes black.
 std::uint8_t to_byte(float channel) {
-  return std::isnan(channel) ? std::uint8_t{0}
-                             : static_cast<std::uint8_t>(std::lround(std::clamp(channel, 0.0f, 1.0f) * 255.0f));
+  return nearest_integer<std::uint8_t>(static_cast<double>(channel * 255.0f));
 }
 
 /// Such a mismatch is a fault of the caller's, not of the user's.
@@ -95,7 +49,7 @@ std::string header_of(const PointCloud& cloud, const std::vector<PlyColumn>& col
 void write_ply(const std::string& path, const PointCloud& cloud, const std::vector<PlyColumn>& columns) {
   check(path, cloud, columns);
   AtomicFile file(path);
-  LittleEndianStream out(file);
+  ByteStream out(file);
   // int is what every reader knows; uint only where int cannot count that far.
   const bool int_is_enough = cloud.size() <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   out.text(header_of(cloud, columns, int_is_enough ? "int" : "uint"));

@@ -15,7 +15,10 @@ TEST_CASE("splats in one place that face alike become one, while sides, material
   splats[3].colour[0] = 1.0f;
   const float area = splats[0].area + splats[3].area;
   std::vector<std::uint32_t> id = {10, 11, 12, 13, 14};
-  CHECK(merge_coincident(splats, id) == 1);
+  const std::vector<MergedSplat> gone = merge_coincident(splats, id);
+  REQUIRE(gone.size() == 1);
+  CHECK(gone[0].id == 13);
+  CHECK(gone[0].into == 10);
   CHECK(id == std::vector<std::uint32_t>{10, 11, 12, 14});
   CHECK(splats[0].area == Approx(area));
   CHECK(splats[0].radius == 0.2f);
@@ -26,10 +29,10 @@ TEST_CASE("splats in one place that face alike become one, while sides, material
 TEST_CASE("a hundred thousand splats in one place are one, and none of a sphere's goes") {
   std::vector<Splat> pile(100'000, make_splat(0.3f, 0.3f, 0.3f, 1, 0, 0, 0.1f));
   std::vector<std::uint32_t> id(pile.size());
-  CHECK(merge_coincident(pile, id) == 99'999);
+  CHECK(merge_coincident(pile, id).size() == 99'999);
   auto sphere = sphere_splats(2000);
   const auto before = sphere;
   id.assign(sphere.size(), 0);
-  CHECK(merge_coincident(sphere, id) == 0);
+  CHECK(merge_coincident(sphere, id).empty());
   CHECK(sphere.size() == before.size());
 }
