@@ -122,7 +122,9 @@ std::string name_of_up(const UpChoice& choice) {
 /// Sets the camera; returns what it shows.
 std::string look(Scene& scene, const WorldSplats& splats, const ViewPoints& points, ChosenView& view) {
   const Vector3d& up = view.up;
-  const auto fit = [&](const Vector3d& from) { fill_frame(scene, points, from, up); };
+  const auto fit = [&](const Vector3d& from) {
+    fill_frame(scene, points, from, up, scene.camera.backfaces.value_or(Backfaces::shade));
+  };
   switch (view.kind) {
   case CloudKind::depth_frame:
     look_from(scene, points, first_station(splats), up);
@@ -171,8 +173,8 @@ ChosenView choose_camera(Scene& scene, const WorldSplats& splats) {
   view.up = up.up;
   const bool is_scan = view.kind == CloudKind::room || view.kind == CloudKind::station;
   view.is_closed_room = is_scan && has_ceiling(points, view.up);
-  const std::string shown = look(scene, splats, points, view);
   if (!scene.camera.backfaces && is_scan) scene.camera.backfaces = Backfaces::see_through;
+  const std::string shown = look(scene, splats, points, view);
   const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
   view.sentence = fmt::format(
       "camera chosen: {}, {}, {} (position = [{:.6g}, {:.6g}, {:.6g}], look_at = [{:.6g}, {:.6g}, {:.6g}], fov_deg = "

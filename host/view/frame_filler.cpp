@@ -22,28 +22,33 @@ struct Rectangle {
 
 } // namespace
 
-void fill_frame(Scene& scene, const ViewPoints& points, const Vector3d& from, const Vector3d& up) {
+void fill_frame(Scene& scene, const ViewPoints& points, const Vector3d& from, const Vector3d& up, Backfaces backfaces) {
   const Vector3d back = from.normalized(), right = up.cross(back).normalized(), upward = back.cross(right);
   const double half_y = std::tan(0.5 * scene.camera.fov_deg * degree) / frame_margin;
   const double half_x = half_y * scene.render.width / scene.render.height;
   // How far away they fit. Perspective makes what is near large: the middle of the picture is found step by step.
   Vector3d target = points.centre();
+  const bool fronts_only = backfaces == Backfaces::see_through;
+  const auto counts = [&](std::size_t i) {
+    return points.in_frame(points.position[i]) && !(fronts_only && points.normal[i].cast<double>().dot(back) < -0.1);
+  };
   double distance = 0.0;
   for (int step = 0; step < 4; ++step) {
     distance = 1e-9 * (1.0 + points.extent().norm());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vector3d d = points.position[i] - target;
-      if (!points.in_frame(points.position[i])) continue;
+      if (!counts(i)) continue;
       const double x = d.dot(right), y = d.dot(upward), z = d.dot(back), r = points.radius[i];
       distance = std::max({distance, z + (std::fabs(x) + r) / half_x, z + (std::fabs(y) + r) / half_y, z + 2.0 * r});
     }
     if (step == 3) break;
     Rectangle seen;
-    for (const Vector3d& p : points.position) {
-      const Vector3d d = p - target;
-      if (points.in_frame(p))
-        seen.add(d.dot(right) / (distance - d.dot(back)), d.dot(upward) / (distance - d.dot(back)));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vector3d d = points.position[i] - target;
+      const double depth = distance - d.dot(back);
+      if (counts(i)) seen.add(d.dot(right) / depth, d.dot(upward) / depth);
     }
+    if (!std::isfinite(seen.low_x)) return fill_frame(scene, points, from, up, Backfaces::shade); // all faces away
     target += distance * (0.5 * (seen.low_x + seen.high_x) * right + 0.5 * (seen.low_y + seen.high_y) * upward);
   }
   scene.camera.look_at = target;

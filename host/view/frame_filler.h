@@ -6,8 +6,8 @@
 namespace pointgi {
 
 /// A camera of the scene's size and angle of view, in the direction `from` of what it looks at, as near as the points'
-/// bounds allow.
-void fill_frame(Scene& scene, const ViewPoints& points, const Vector3d& from, const Vector3d& up);
+/// bounds allow. Where backs are seen through, what faces away does not count.
+void fill_frame(Scene& scene, const ViewPoints& points, const Vector3d& from, const Vector3d& up, Backfaces backfaces);
 
 /// A camera at `eye` that turns to the points and takes an angle of view for all in front of it, 120 degrees at most.
 void look_from(Scene& scene, const ViewPoints& points, const Vector3d& eye, const Vector3d& up);

@@ -8,8 +8,8 @@ namespace pointgi {
 struct Support {
   double footprint = 0.0; ///< bounding rectangle of the lowest fiftieth, as a share of the whole's; 0 where the middle
                           ///< of the points is not above it
-  double filled = 0.0; ///< share of that rectangle that something is above: 1 of a slab, little of feet or a rim
-  double flat = 0.0;   ///< area there that faces down, as a share of the whole's rectangle
+  double filled = 0.0;    ///< share of that rectangle that something is above: 1 of a slab, little of feet or a rim
+  double flat = 0.0;      ///< area there that faces down, as a share of the whole's rectangle
 };
 Support support_of(const ViewPoints& points, int axis, double sign);
 
