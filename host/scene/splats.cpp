@@ -89,6 +89,13 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
 
 void append_cloud(WorldSplats& splats, PointCloud&& cloud, const MaterialSettings& material, std::uint32_t number) {
   set_albedo(cloud, material);
+  const std::size_t size = splats.cloud.size() + cloud.size(); // exactly: doubled arrays of a large scan would not fit
+  splats.cloud.position.reserve(size);
+  splats.cloud.normal.reserve(size);
+  splats.cloud.colour.reserve(size);
+  splats.cloud.radius.reserve(size);
+  splats.cloud.area.reserve(size);
+  splats.material.reserve(size);
   append(splats, std::move(cloud), number);
 }
 
