@@ -78,6 +78,11 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
     all.cloud.record = {};
     return;
   }
+  if (!all.cloud.structure.empty() || !part.structure.empty()) { // what is not looked at is as good as a surface
+    all.cloud.structure.resize(all.cloud.size(), Structure::surface);
+    part.structure.resize(part.size(), Structure::surface);
+    join(all.cloud.structure, part.structure);
+  }
   join(all.cloud.position, part.position);
   join(all.cloud.normal, part.normal);
   join(all.cloud.colour, part.colour);
