@@ -59,6 +59,11 @@ bool is_kept(const FieldPlan& plan, std::size_t field) {
 
 } // namespace
 
+const std::vector<const char*>& intensity_names() {
+  static const std::vector<const char*> names{"intensity", "intensities", "reflectance", "reflectivity", "amplitude"};
+  return names;
+}
+
 bool FieldPlan::has(int place) const {
   return std::find(slot.begin(), slot.end(), place) != slot.end();
 }
@@ -106,7 +111,8 @@ FieldPlan match_fields(std::vector<FieldInfo> fields, const ReadRequest& request
                                            {"rf", "gf", "bf"}});
   if (!colours) match(slot_packed_colour, {{"rgb"}, {"rgba"}});
   match(slot_radius, {{"radius"}});
-  match(slot_intensity, {{"intensity"}, {"intensities"}, {"reflectance"}, {"reflectivity"}, {"amplitude"}});
+  for (const char* name : intensity_names())
+    if (match(slot_intensity, {{name}})) break;
   match(slot_station, {{"station"}});
   if (match(slot_harmonic, {{"f_dc_0", "f_dc_1", "f_dc_2"}})) { // without these the others are something else
     match(slot_opacity, {{"opacity"}});
