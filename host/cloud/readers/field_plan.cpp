@@ -130,8 +130,10 @@ void report_fields(const FieldPlan& plan, CloudReport& report) {
   for (std::size_t f = 0; f < plan.fields.size(); ++f) {
     const std::string& name = plan.fields[f].name;
     report.fields.push_back(name);
-    // The higher harmonics are understood: how colours change with the view, which diffuse surfaces do not.
-    const bool understood = plan.has(slot_harmonic) && lookup_name(name).rfind("f_rest_", 0) == 0;
+    // Understood, but of no use to opaque diffuse surfaces: alpha, and how colours change with the view.
+    const std::string lookup = lookup_name(name);
+    const bool understood =
+        lookup == "alpha" || lookup == "diffuse_alpha" || (plan.has(slot_harmonic) && lookup.rfind("f_rest_", 0) == 0);
     if (understood || std::string(plan.use_of(f)) != "not used") continue;
     if (count++ < most) unused += (unused.empty() ? "" : ", ") + printable(name);
   }
