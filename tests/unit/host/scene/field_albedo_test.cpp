@@ -102,7 +102,7 @@ TEST_CASE("field albedo: intensity stands in where a file has no colours", "[fie
 TEST_CASE("field albedo: points that are dropped take their values with them", "[fields]") {
   const SceneFolder folder;
   std::string text = grid_ply(intensity, hundreds);
-  text.replace(text.find("\n5 0 0 500"), 4, "\nnan ");
+  text.replace(text.find("\n5 0 0 500"), 3, "\nnan ");
   folder.write("cloud.ply", text);
   const WorldSplats splats =
       splats_of(folder, "colour_space = \"linear\"\nalbedo = { field = \"intensity\", low = 0, high = 1000 }");
