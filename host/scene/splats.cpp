@@ -117,7 +117,7 @@ Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
       .toRotationMatrix();
 }
 
-PointCloud load_cloud(const CloudSettings& settings, const std::vector<std::string>& fields, CloudReport& report) {
+PointCloud load_cloud(const CloudSettings& settings, CloudReport& report, const std::vector<std::string>& fields) {
   std::vector<std::string> wanted = fields_of(settings.selection);
   wanted.insert(wanted.end(), fields.begin(), fields.end());
   PointCloud cloud = settings.points
@@ -149,7 +149,7 @@ WorldSplats load_splats(const Scene& scene) {
     CloudReport& report = all.reports.emplace_back();
     const std::uint32_t number = index_of(scene, settings.material);
     const MaterialSettings& material = scene.materials[number];
-    PointCloud cloud = load_cloud(settings, material.albedo_field ? material.albedo_field->fields : no_fields, report);
+    PointCloud cloud = load_cloud(settings, report, material.albedo_field ? material.albedo_field->fields : no_fields);
     take_colours_from_fields(cloud, settings, material, report);
     set_albedo(cloud, material);
     const Eigen::Matrix3d rotation = rotation_of(settings);

@@ -18,7 +18,7 @@ struct WorldSplats {
 
 /// Reads a cloud or mesh (anything else that assimp knows; sampled) and completes it; file's own coordinates. `fields`:
 /// names of those of the file that are wanted.
-PointCloud load_cloud(const CloudSettings& settings, const std::vector<std::string>& fields, CloudReport& report);
+PointCloud load_cloud(const CloudSettings& settings, CloudReport& report, const std::vector<std::string>& fields = {});
 
 /// Loads, samples and places everything. Throws Error(input), or Error(memory).
 WorldSplats load_splats(const Scene& scene);
