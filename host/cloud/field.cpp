@@ -59,4 +59,11 @@ std::string lookup_name(const std::string& name) {
   return prefixed ? lower.substr(prefix.size()) : lower;
 }
 
+const Field* find_field(const std::vector<Field>& fields, const std::string& name) {
+  const std::string wanted = lookup_name(name);
+  const auto at = std::find_if(fields.begin(), fields.end(),
+                               [&](const Field& field) { return lookup_name(field.info.name) == wanted; });
+  return at == fields.end() ? nullptr : &*at;
+}
+
 } // namespace pointgi

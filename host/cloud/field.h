@@ -34,5 +34,7 @@ struct Field {
 
 /// A name as fields are looked up by it: in lower case, without the scalar_ that CloudCompare puts before its own.
 std::string lookup_name(const std::string& name);
+/// The first field whose lookup name is that of `name`, or null.
+const Field* find_field(const std::vector<Field>& fields, const std::string& name);
 
 } // namespace pointgi

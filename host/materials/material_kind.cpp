@@ -43,9 +43,37 @@ const std::vector<std::string>& diffuse_keys() {
   return keys;
 }
 
+namespace {
+
+/// Three numbers, or fields of the points by which it goes.
+void load_albedo(const TableReader& table, MaterialSettings& material) {
+  const toml::node* node = table.find("albedo");
+  if (node != nullptr && node->is_string())
+    table.fail("albedo", "expected three numbers or a table like { field = \"intensity\" }, found a text");
+  if (node == nullptr || !node->is_table()) {
+    material.albedo = table.vector3("albedo", limits::reflectance);
+    return;
+  }
+  const TableReader keys = *table.table("albedo");
+  keys.allow_only({"field", "fields", "low", "high"});
+  FieldAlbedo albedo;
+  if (keys.has("field") && keys.has("fields")) keys.fail("fields", "there is a field, too; remove one of the two");
+  if (const auto fields = keys.texts("fields", 3))
+    albedo.fields = *fields;
+  else
+    albedo.fields = {keys.need_text("field", "the name of a field of the points")};
+  albedo.low = keys.number("low", limits::field_value);
+  albedo.high = keys.number("high", limits::field_value);
+  if (albedo.low && albedo.high && !(*albedo.low < *albedo.high))
+    keys.fail("high", "expected a number above low, found one that is not; low is black and high is white");
+  material.albedo_field = std::move(albedo);
+}
+
+} // namespace
+
 void load_diffuse_keys(const TableReader& table, MaterialSettings& material) {
   material.flags |= MATERIAL_REFLECTS_DIFFUSELY;
-  material.albedo = table.vector3("albedo", limits::reflectance);
+  load_albedo(table, material);
   if (const auto emission = table.vector3("emission", limits::light)) material.emission = *emission;
   if (table.boolean("two_sided").value_or(false)) material.flags |= MATERIAL_TWO_SIDED;
   if (const auto space = table.choice("colour_space", {"srgb", "linear"}))

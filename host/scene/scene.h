@@ -63,10 +63,17 @@ enum class MaterialType : pg_uint { MATERIAL_KINDS(MATERIAL_TYPE) };
 #undef MATERIAL_TYPE
 const char* name_of(MaterialType type);
 
+/// Reflectance by numbers that the file has for its points.
+struct FieldAlbedo {
+  std::vector<std::string> fields; ///< one: grey; three: red, green and blue
+  std::optional<double> low, high; ///< of black and white; absent: where 1 % and 99 % of the values lie below
+};
+
 struct MaterialSettings {
   std::string name;
   MaterialType type = MaterialType::diffuse;
   std::optional<Vector3d> albedo;               ///< always linear; absent: the points' colours
+  std::optional<FieldAlbedo> albedo_field;      ///< instead of the points' colours, encoded as they are
   Vector3d emission{0, 0, 0};                   ///< radiance [W/m²/sr] of the front side
   pg_uint flags = 0;                            ///< MATERIAL_... of shared/material_kinds.h
   Vector3d specular{0, 0, 0};                   ///< reflectance of the specular part (Material::specular)

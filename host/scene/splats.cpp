@@ -2,6 +2,7 @@
 #include "host/cloud/readers/readers.h"
 #include "host/error.h"
 #include "host/image/srgb.h"
+#include "host/scene/field_albedo.h"
 #include "host/scene/sample_shape.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -66,6 +67,23 @@ void place(CloudReport& report, const CloudSettings& settings, const Eigen::Matr
   if (report.up) report.up = rotation * *report.up;
 }
 
+/// Where the material or the lack of colours asks for it.
+void take_colours_from_fields(PointCloud& cloud, const CloudSettings& settings, const MaterialSettings& material,
+                              CloudReport& report) {
+  if (material.albedo_field)
+    colours_from_fields(material, settings.file, cloud, report);
+  else if (!material.albedo && cloud.colour.empty() && exchanges_light(material))
+    colours_from_intensity(cloud, report);
+  cloud.fields = {};
+}
+
+void refuse_fields(const ShapeSettings& shape, const MaterialSettings& material) {
+  if (!material.albedo_field) return;
+  throw Error(ErrorKind::input, shape.place.text() + ": the shape's material \"" + material.name +
+                                    "\" takes its albedo from a field of the points, and shapes have none; give it "
+                                    "another material");
+}
+
 void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   all.first.push_back(static_cast<std::uint32_t>(all.cloud.size()));
   const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -111,11 +129,12 @@ Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
       .toRotationMatrix();
 }
 
-PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
-  PointCloud cloud =
-      settings.points ? *settings.points
-                      : read_cloud(settings.file,
-                                   {settings.spacing / settings.scale, fields_of(settings.selection), false}, report);
+PointCloud load_cloud(const CloudSettings& settings, CloudReport& report, const std::vector<std::string>& fields) {
+  std::vector<std::string> wanted = fields_of(settings.selection);
+  wanted.insert(wanted.end(), fields.begin(), fields.end());
+  PointCloud cloud = settings.points
+                         ? *settings.points
+                         : read_cloud(settings.file, {settings.spacing / settings.scale, wanted, false}, report);
   if (settings.points) report.format = "arrays in memory";
   report.sampled = !cloud.area.empty();
   try {
@@ -136,20 +155,24 @@ PointCloud load_cloud(const CloudSettings& settings, CloudReport& report) {
 }
 
 WorldSplats load_splats(const Scene& scene) {
+  static const std::vector<std::string> no_fields;
   WorldSplats all;
   for (const CloudSettings& settings : scene.clouds) {
     CloudReport& report = all.reports.emplace_back();
-    PointCloud cloud = load_cloud(settings, report);
-    const std::uint32_t material = index_of(scene, settings.material);
-    set_albedo(cloud, scene.materials[material]);
+    const std::uint32_t number = index_of(scene, settings.material);
+    const MaterialSettings& material = scene.materials[number];
+    PointCloud cloud = load_cloud(settings, report, material.albedo_field ? material.albedo_field->fields : no_fields);
+    take_colours_from_fields(cloud, settings, material, report);
+    set_albedo(cloud, material);
     const Eigen::Matrix3d rotation = rotation_of(settings);
     place(cloud, settings, rotation);
     place(report, settings, rotation);
-    append(all, std::move(cloud), material);
+    append(all, std::move(cloud), number);
   }
   for (const ShapeSettings& settings : scene.shapes) {
     PointCloud cloud = sample_shape(settings);
     const std::uint32_t material = index_of(scene, settings.material);
+    refuse_fields(settings, scene.materials[material]);
     set_albedo(cloud, scene.materials[material]);
     append(all, std::move(cloud), material);
   }

@@ -197,6 +197,19 @@ std::optional<std::string> TableReader::text(const char* key) const {
   return value->get();
 }
 
+std::optional<std::vector<std::string>> TableReader::texts(const char* key, std::size_t count) const {
+  const toml::node* node = table_->get(key);
+  if (node == nullptr) return std::nullopt;
+  std::vector<std::string> values;
+  if (const toml::array* array = node->as_array())
+    for (const toml::node& element : *array)
+      if (const auto* value = element.as_string(); value != nullptr && !value->get().empty())
+        values.push_back(value->get());
+  if (values.size() != count || node->as_array()->size() != count)
+    unexpected(key, std::to_string(count) + " texts that are not empty");
+  return values;
+}
+
 std::optional<std::string> TableReader::choice(const char* key, const std::vector<std::string>& words) const {
   const toml::node* node = table_->get(key);
   if (node == nullptr) return std::nullopt;

@@ -45,6 +45,7 @@ public:
   std::optional<std::vector<double>> numbers(const char* key, const limits::NumberRange& range) const; ///< one or more
   std::optional<bool> boolean(const char* key) const;
   std::optional<std::string> text(const char* key) const;                                          ///< not empty
+  std::optional<std::vector<std::string>> texts(const char* key, std::size_t count) const;         ///< not empty
   std::optional<std::string> choice(const char* key, const std::vector<std::string>& words) const; ///< one of `words`
 
   // Absent keys are refused.

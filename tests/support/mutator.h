@@ -10,7 +10,7 @@ namespace pointgi::test {
 
 class Mutator {
 public:
-  /// Numbers are exchanged in the text before `end_of_header`.
+  /// Numbers are exchanged in the text before `end_of_header`; empty: anywhere.
   explicit Mutator(std::uint32_t seed, std::string end_of_header = "end_header")
       : random_(seed), end_of_header_(std::move(end_of_header)) {}
 
@@ -27,7 +27,7 @@ private:
 
   void change_once(std::string& bytes) {
     const std::size_t at = below(bytes.size());
-    switch (below(7)) {
+    switch (below(8)) {
     case 0:
       bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
       break;
@@ -46,9 +46,24 @@ private:
     case 5:
       bytes.insert(at, bytes.substr(below(bytes.size()), below(64)));
       break;
+    case 6:
+      set_number(bytes, at);
+      break;
     default:
       swap_number(bytes);
     }
+  }
+
+  /// Puts a nasty binary number of 1 to 8 bytes somewhere.
+  void set_number(std::string& bytes, std::size_t at) {
+    static const std::vector<std::string> nasty{std::string(8, '\0'),
+                                                std::string(8, '\xff'),
+                                                std::string("\0\0\0\x80\0\0\0\x80", 8),  // the least int
+                                                std::string("\xff\xff\xff\x7f\0\0\0\0", 8), // the largest; a NaN
+                                                std::string("\0\0\x80\x7f\0\0\xf0\x7f", 8), // infinite
+                                                std::string("\0\0\0\0\0\0\0\x80", 8)};
+    const std::size_t length = std::min<std::size_t>(std::size_t{1} << below(4), bytes.size() - at);
+    bytes.replace(at, length, nasty[below(nasty.size())].substr(0, length));
   }
 
   /// Puts a nasty number or word in the place of a number or word of the header.
@@ -57,7 +72,8 @@ private:
         "0",     "-1",   "255",  "65536", "2147483648", "4294967297", "18446744073709551615",
         "1e30",  "1,5",  "nan",  "inf",   "1.0",        "vertex",     "face",
         "float", "char", "list", "x",     "",           "\r"};
-    const std::size_t header = std::min(bytes.find(end_of_header_), bytes.size());
+    const std::size_t header =
+        end_of_header_.empty() ? bytes.size() : std::min(bytes.find(end_of_header_), bytes.size());
     std::size_t start = below(header + 1);
     start = bytes.find_first_not_of(" \n", start);
     if (start == std::string::npos) return;

@@ -24,6 +24,13 @@ inline bool survives(PointCloud (*read)(const std::string&, const ReadRequest&, 
       REQUIRE(field.values.size() == cloud.size());
     for (const std::uint16_t station : cloud.station)
       REQUIRE(station < cloud.stations.size());
+    for (const auto& corners : cloud.triangle)
+      for (const std::uint32_t corner : corners)
+        REQUIRE(corner < cloud.size());
+    for (const Eigen::Vector3d& station : cloud.stations)
+      REQUIRE(station.allFinite());
+    for (const Eigen::Vector3f& colour : cloud.colour) // what is not finite is dropped later
+      REQUIRE((!colour.allFinite() || (colour.minCoeff() >= 0.0f && colour.maxCoeff() <= 1.0f)));
     REQUIRE(cloud.size() > 0);
     REQUIRE(report.points_in_file == cloud.size());
     // As errors are, what is told is fit for a terminal.

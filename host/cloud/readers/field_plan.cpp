@@ -59,6 +59,11 @@ bool is_kept(const FieldPlan& plan, std::size_t field) {
 
 } // namespace
 
+const std::vector<const char*>& intensity_names() {
+  static const std::vector<const char*> names{"intensity", "intensities", "reflectance", "reflectivity", "amplitude"};
+  return names;
+}
+
 bool FieldPlan::has(int place) const {
   return std::find(slot.begin(), slot.end(), place) != slot.end();
 }
@@ -106,7 +111,8 @@ FieldPlan match_fields(std::vector<FieldInfo> fields, const ReadRequest& request
                                            {"rf", "gf", "bf"}});
   if (!colours) match(slot_packed_colour, {{"rgb"}, {"rgba"}});
   match(slot_radius, {{"radius"}});
-  match(slot_intensity, {{"intensity"}, {"intensities"}, {"reflectance"}, {"reflectivity"}, {"amplitude"}});
+  for (const char* name : intensity_names())
+    if (match(slot_intensity, {{name}})) break;
   match(slot_station, {{"station"}});
   if (match(slot_harmonic, {{"f_dc_0", "f_dc_1", "f_dc_2"}})) { // without these the others are something else
     match(slot_opacity, {{"opacity"}});
@@ -124,8 +130,10 @@ void report_fields(const FieldPlan& plan, CloudReport& report) {
   for (std::size_t f = 0; f < plan.fields.size(); ++f) {
     const std::string& name = plan.fields[f].name;
     report.fields.push_back(name);
-    // The higher harmonics are understood: how colours change with the view, which diffuse surfaces do not.
-    const bool understood = plan.has(slot_harmonic) && lookup_name(name).rfind("f_rest_", 0) == 0;
+    // Understood, but of no use to opaque diffuse surfaces: alpha, and how colours change with the view.
+    const std::string lookup = lookup_name(name);
+    const bool understood =
+        lookup == "alpha" || lookup == "diffuse_alpha" || (plan.has(slot_harmonic) && lookup.rfind("f_rest_", 0) == 0);
     if (understood || std::string(plan.use_of(f)) != "not used") continue;
     if (count++ < most) unused += (unused.empty() ? "" : ", ") + printable(name);
   }

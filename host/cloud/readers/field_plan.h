@@ -44,6 +44,9 @@ struct FieldPlan {
 FieldPlan match_fields(std::vector<FieldInfo> fields, const ReadRequest& request, const std::string& file,
                        const std::string& place);
 
+/// Under what names a file may have the strength of the return, the likeliest first.
+const std::vector<const char*>& intensity_names();
+
 /// Writes the names of all fields to `report.fields`, and those that are not used to `report.notes`.
 void report_fields(const FieldPlan& plan, CloudReport& report);
 

@@ -13,10 +13,15 @@ constexpr std::size_t at_compressor = 0, at_coder = 2, at_chunk_points = 12, at_
 enum Compressor : unsigned { one_chunk = 1, points_in_chunks = 2, layers_in_chunks = 3 };
 constexpr std::uint32_t varying = 0xffffffff;
 
-/// Points that repeat each other take next to nothing: so many a byte, and no more, are believed.
-constexpr std::uint64_t points_per_byte = 200;
+/// Points that repeat each other take next to nothing: so many points, and bytes of records, for a byte of the file are
+/// believed, and no more.
+constexpr std::uint64_t points_per_byte = 200, expansion = 8192;
 /// A decoder looks a few bytes ahead; further behind the end nobody wrote anything.
 constexpr std::size_t look_ahead = 16;
+
+bool can_hold(std::uint64_t bytes, std::uint64_t points, std::size_t record_bytes) {
+  return points / points_per_byte <= bytes && points <= bytes * expansion / record_bytes;
+}
 
 const unsigned char* unsigned_bytes(const char* bytes) {
   return reinterpret_cast<const unsigned char*>(bytes);
@@ -28,7 +33,7 @@ LazChunks::LazChunks(const InputFile& file, std::uint64_t begin, std::uint64_t p
                      const std::string& description)
     : file_(file), record_bytes_(record_bytes) {
   parse_description(description);
-  if (begin > file.size() || points / points_per_byte > file.size() - begin)
+  if (begin > file.size() || !can_hold(file.size() - begin, points, record_bytes))
     fail(begin, std::to_string(points) + " compressed points from here on, which a file of " +
                     std::to_string(file.size()) + " bytes cannot hold; it is truncated or corrupt");
   if (compressor_ == one_chunk)
@@ -57,18 +62,18 @@ void LazChunks::parse_description(const std::string& description) {
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const char* at = &description[items_begin + i * item_bytes];
-    const LazItem item{little_endian<std::uint16_t>(at), little_endian<std::uint16_t>(at + 2),
-                       little_endian<std::uint16_t>(at + 4)};
-    const bool is_known =
-        compressor_ == layers_in_chunks ? make_layer_part(item) != nullptr : make_point_part(item) != nullptr;
-    if (!is_known)
+    items_.push_back(
+        {little_endian<std::uint16_t>(at), little_endian<std::uint16_t>(at + 2), little_endian<std::uint16_t>(at + 4)});
+    bytes += items_.back().bytes;
+  }
+  // Before any is made: models of many extra bytes are large, and each chunk stores a record as it is.
+  if (bytes != record_bytes_ || bytes > file_.size() || items_.empty())
+    refuse("items of " + std::to_string(bytes) + " bytes for records of " + std::to_string(record_bytes_));
+  for (const LazItem& item : items_)
+    if (compressor_ == layers_in_chunks ? make_layer_part(item) == nullptr : make_point_part(item) == nullptr)
       refuse("points with an item of type " + std::to_string(item.type) + ", version " + std::to_string(item.version) +
              ", are not read directly");
-    items_.push_back(item);
-    bytes += item.bytes;
-  }
-  if (bytes != record_bytes_ || (compressor_ == layers_in_chunks && items_.front().type != 10))
-    refuse("items of " + std::to_string(bytes) + " bytes for records of " + std::to_string(record_bytes_));
+  if (compressor_ == layers_in_chunks && items_.front().type != 10) refuse("points whose first item is no point");
   if (chunk_points_ == 0) refuse("chunks of 0 points");
 }
 
@@ -124,7 +129,7 @@ std::vector<char> LazChunks::decode(std::size_t index) const {
   const Chunk& chunk = chunks_[index];
   std::vector<char> bytes(static_cast<std::size_t>(chunk.bytes));
   file_.read(chunk.begin, bytes.data(), bytes.size());
-  if (chunk.count / points_per_byte > chunk.bytes || bytes.size() < record_bytes_)
+  if (!can_hold(chunk.bytes, chunk.count, record_bytes_) || bytes.size() < record_bytes_)
     fail(chunk.begin, "a chunk of " + std::to_string(chunk.bytes) + " bytes cannot hold " +
                           std::to_string(chunk.count) + " points; the file is corrupt");
   return compressor_ == layers_in_chunks ? decode_layers(bytes, chunk) : decode_points(bytes, chunk);

@@ -1,5 +1,6 @@
 #include "host/cloud/readers/ply_binary.h"
 #include "host/cloud/readers/record_pieces.h"
+#include "host/cloud/readers/record_values.h"
 #include <algorithm>
 
 namespace pointgi {
@@ -7,23 +8,6 @@ namespace pointgi {
 namespace {
 
 constexpr std::size_t window_bytes = std::size_t{4} << 20;
-
-template <class Value, class Bits>
-double load(const char* bytes, bool swap) {
-  Bits bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  if (swap) {
-    if constexpr (sizeof bits == 2)
-      bits = __builtin_bswap16(bits);
-    else if constexpr (sizeof bits == 4)
-      bits = __builtin_bswap32(bits);
-    else if constexpr (sizeof bits == 8)
-      bits = __builtin_bswap64(bits);
-  }
-  Value value;
-  std::memcpy(&value, &bits, sizeof value);
-  return static_cast<double>(value);
-}
 
 bool has_lists(const PlyElement& element) {
   return std::any_of(element.properties.begin(), element.properties.end(),
@@ -50,33 +34,15 @@ std::vector<ReadValue> values_of(const PlyElement& vertex, const FieldPlan& plan
 } // namespace
 
 double ply_value(const char* bytes, FieldType type, bool swap) {
-  switch (type) {
-  case FieldType::i8:
-    return load<std::int8_t, std::uint8_t>(bytes, swap);
-  case FieldType::u8:
-    return load<std::uint8_t, std::uint8_t>(bytes, swap);
-  case FieldType::i16:
-    return load<std::int16_t, std::uint16_t>(bytes, swap);
-  case FieldType::u16:
-    return load<std::uint16_t, std::uint16_t>(bytes, swap);
-  case FieldType::i32:
-    return load<std::int32_t, std::uint32_t>(bytes, swap);
-  case FieldType::u32:
-    return load<std::uint32_t, std::uint32_t>(bytes, swap);
-  case FieldType::f32:
-    return load<float, std::uint32_t>(bytes, swap);
-  case FieldType::f64:
-    return load<double, std::uint64_t>(bytes, swap);
-  case FieldType::i64: // no type of PLY
-  case FieldType::u64:
-    break;
-  }
-  return 0.0;
+  if (!swap) return value_at(bytes, type);
+  char turned[sizeof(double)];
+  std::reverse_copy(bytes, bytes + size_of(type), turned);
+  return value_at(turned, type);
 }
 
 PlyBinaryBody::PlyBinaryBody(const PlyHeader& header, const InputFile& file)
-    : file_(file), swap_((header.format == PlyFormat::binary_big_endian) != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)),
-      window_(new char[window_bytes]), window_begin_(header.body_offset), at_(window_.get()), end_(at_) {}
+    : file_(file), swap_(header.format == PlyFormat::binary_big_endian), window_(new char[window_bytes]),
+      window_begin_(header.body_offset), at_(window_.get()), end_(at_) {}
 
 void PlyBinaryBody::go_to(std::uint64_t position) {
   window_begin_ = position;

@@ -3,12 +3,11 @@
 #include "host/cloud/input_file.h"
 #include "host/cloud/readers/ply_header.h"
 #include "host/cloud/readers/point_sink.h"
-#include <cstring>
 #include <memory>
 
 namespace pointgi {
 
-/// The value at `bytes`, whose order is turned round where `swap` says so.
+/// The value at `bytes`, little-endian, or big-endian where `swap` says so.
 double ply_value(const char* bytes, FieldType type, bool swap);
 
 /// A stream of records of values, through a window on the file; and points of one length past it, on all cores.

@@ -113,6 +113,7 @@ PlyLayout plan_ply(const PlyHeader& header, const ReadRequest& request, const st
       layout.plan.has(slot_colour) || layout.plan.has(slot_packed_colour) || layout.plan.has(slot_harmonic);
   if (!coloured && layout.face_element != PlyLayout::none)
     layout.face_colour = find_face_colour(header.elements[layout.face_element]);
+  if (layout.face_colour != no_triple) layout.plan.forget(slot_intensity); // it need not stand in for colours
   report_fields(layout.plan, report);
   report_uses(header, layout, report);
   return layout;

@@ -71,7 +71,7 @@ TEST_CASE("fields: the report says what each is used for, and once what is not u
   CHECK_THAT(report.notes[0], Contains("not used: curvature, \\x1b[31m;"));
 
   CloudReport all_used;
-  plan_of({"x", "y", "z"}, {}, &all_used);
+  plan_of({"x", "y", "z", "red", "green", "blue", "alpha"}, {}, &all_used);
   CHECK(all_used.notes.empty());
 
   std::vector<std::string> many{"x", "y", "z"};
