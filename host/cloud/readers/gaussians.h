@@ -15,7 +15,9 @@ struct GaussianValues {
 /// A Gaussian whose shortest axis is longer than this share of the middle one has no flat side, thus no normal.
 constexpr float flat_gaussian = 0.8f;
 /// Radius of the disc over the geometric mean of the two longer axes: the disc pi r^2 has the area that the Gaussian
-/// has as the integral of its profile, 2 pi s t.
+/// has as the integral of its profile, 2 pi s t. With it and least_opacity the discs of a clean capture leave less than
+/// 1 % of its opaque pixels open and cover 3 to 9 % more beside them; a factor of 1 leaves 2 to 4 % open, one of 2
+/// covers 9 to 20 % more.
 constexpr float gaussian_radius = 1.41421356f;
 
 /// Fills colour, opacity, radius and normal of the cloud; radii and normals (other than zero) that the cloud has

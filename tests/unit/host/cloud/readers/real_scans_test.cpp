@@ -69,6 +69,12 @@ void compare(const std::string& path, const PointCloud& cloud, const CloudReport
   if (has_normals_in_truth(path, truth))
     CHECK(static_cast<double>(measured.with_normal) / static_cast<double>(cloud.size()) ==
           Approx(truth.at("share_with_normals").get<double>()).margin(1e-6));
+  if (truth.contains("mean_opacity")) { // with five decimals
+    double opacity = 0.0;
+    for (const float value : cloud.opacity)
+      opacity += static_cast<double>(value) / static_cast<double>(cloud.size());
+    CHECK(opacity == Approx(truth.at("mean_opacity").get<double>()).margin(1e-5));
+  }
   const std::vector<Eigen::Vector3d> stations = stations_of(truth);
   CHECK(cloud.stations.size() == stations.size());
   for (std::size_t i = 0; i < std::min(cloud.stations.size(), stations.size()); ++i)
