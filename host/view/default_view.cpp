@@ -65,7 +65,7 @@ Vector3d first_station(const WorldSplats& splats) {
 UpChoice up_for(const Scene& scene, const WorldSplats& splats, const ViewPoints& points, CloudKind kind) {
   if (scene.up_chosen) return {up_of(scene), "as asked for"};
   for (const CloudReport& report : splats.reports)
-    if (report.up) return {report.up->normalized(), "as the file has it"};
+    if (report.up) return {report.up->normalized(), "of the file or this kind of cloud"};
   return find_up(points, kind, first_station(splats));
 }
 
