@@ -290,12 +290,13 @@ TEST_CASE("packets of rays find what the rays find one by one") {
 }
 
 TEST_CASE("where backs are seen through, every form and grouping finds the nearest front of a linear scan") {
-  const auto splats = GENERATE(mixed_splats(), sheet_splats(mixed_splats()));
+  const bool sheets = GENERATE(false, true);
+  const auto splats = sheets ? sheet_splats(mixed_splats()) : mixed_splats();
   const auto rays = hard_rays(splats, 50'011, 61);
   const auto in_bundles = bundles(splats);
   const auto truth = trace_all(splats, rays, Backfaces::see_through);
   const auto truth_of_bundles = trace_all(splats, in_bundles, Backfaces::see_through);
-  CHECK(differences(trace_all(splats, rays), truth) > rays.size() / 10); // it does make a difference
+  if (!sheets) CHECK(differences(trace_all(splats, rays), truth) > rays.size() / 10); // it does make a difference
   std::size_t backs = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (truth[i].splat == NO_SPLAT) continue;
