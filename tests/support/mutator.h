@@ -58,7 +58,7 @@ private:
   void set_number(std::string& bytes, std::size_t at) {
     static const std::vector<std::string> nasty{std::string(8, '\0'),
                                                 std::string(8, '\xff'),
-                                                std::string("\0\0\0\x80\0\0\0\x80", 8),  // the least int
+                                                std::string("\0\0\0\x80\0\0\0\x80", 8),     // the least int
                                                 std::string("\xff\xff\xff\x7f\0\0\0\0", 8), // the largest; a NaN
                                                 std::string("\0\0\x80\x7f\0\0\xf0\x7f", 8), // infinite
                                                 std::string("\0\0\0\0\0\0\0\x80", 8)};

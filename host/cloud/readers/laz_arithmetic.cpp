@@ -107,11 +107,13 @@ std::uint32_t LazDecoder::bits(unsigned count) {
   return value;
 }
 
-LazIntegers::LazIntegers(unsigned bits, std::size_t contexts) : bits_(bits) {
-  for (std::size_t c = 0; c < contexts; ++c)
-    sizes_.emplace_back(bits + 1);
-  for (unsigned size = 1; size <= bits; ++size)
-    corrections_.emplace_back(1u << std::min(size, upper_bits));
+LazIntegers::LazIntegers(unsigned bits, std::size_t contexts)
+    : bits_(bits), sizes_(contexts, LazModel(bits + 1)), corrections_(bits) {}
+
+LazModel& LazIntegers::model_of(unsigned size) {
+  std::unique_ptr<LazModel>& model = corrections_[size - 1];
+  if (!model) model = std::make_unique<LazModel>(1u << std::min(size, upper_bits));
+  return *model;
 }
 
 std::int32_t LazIntegers::decode(LazDecoder& decoder, std::int32_t predicted, std::size_t context) {
@@ -128,7 +130,7 @@ std::int32_t LazIntegers::correction(LazDecoder& decoder, LazModel& sizes) {
   last_bits_ = decoder.symbol(sizes);
   if (last_bits_ == 0) return static_cast<std::int32_t>(decoder.bit(small_));
   if (last_bits_ >= 32) return INT32_MIN;
-  std::uint32_t value = decoder.symbol(corrections_[last_bits_ - 1]);
+  std::uint32_t value = decoder.symbol(model_of(last_bits_));
   if (last_bits_ > upper_bits) {
     const unsigned lower = last_bits_ - upper_bits;
     value = value << lower | decoder.bits(lower);

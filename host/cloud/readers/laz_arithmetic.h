@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace pointgi {
@@ -96,11 +97,12 @@ public:
 
 private:
   std::int32_t correction(LazDecoder& decoder, LazModel& sizes);
+  LazModel& model_of(unsigned size); ///< made when it is first used
   unsigned bits_;
   unsigned last_bits_ = 0;
-  std::vector<LazModel> sizes_;       ///< one a context: bits of the correction
-  LazBitModel small_;                 ///< corrections 0 and 1
-  std::vector<LazModel> corrections_; ///< by their bits, from 1; of large ones the upper eight
+  std::vector<LazModel> sizes_;                        ///< one a context: bits of the correction
+  LazBitModel small_;                                  ///< corrections 0 and 1
+  std::vector<std::unique_ptr<LazModel>> corrections_; ///< by their bits, from 1; of large ones the upper eight
 };
 
 /// The middle of the last five values, in the order in which LASzip forgets them.
