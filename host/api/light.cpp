@@ -85,4 +85,13 @@ void Light::write_ply(const std::string& file, const LitFileOptions& with, const
   write_lit_ply(file, parts_->prepared->scene, parts_->prepared->ready, lit);
 }
 
+void Light::write_las(const std::string& file, const LitFileOptions& with, const RunControl& run) const {
+  const RunScope scope(run);
+  const Prepared::Parts& from = *parts_->prepared;
+  if (!can_write_las(from.scene) || !from.ready.file_order)
+    throw Error(ErrorKind::usage, file + ": only a scene of one LAS file and nothing else becomes LAS; write PLY");
+  const LitCloud lit = parts_->lit_cloud(with);
+  write_lit_las(file, from.scene, from.ready, lit);
+}
+
 } // namespace pointgi::api

@@ -75,6 +75,9 @@ public:
   /// one cloud and nothing else gives back the cloud's own points, in their order and with all that they had, and the
   /// results beside them. Throws as radiosity() and sky(), and Error(output).
   void write_ply(const std::string& file, const LitFileOptions& options = {}, const RunControl& run = {}) const;
+  /// The same as a LAS file with extra bytes, of a scene of one LAS file and nothing else. Throws as write_ply(), and
+  /// Error(usage) for other scenes.
+  void write_las(const std::string& file, const LitFileOptions& options = {}, const RunControl& run = {}) const;
 
   struct Parts; ///< for the library itself
   const std::shared_ptr<Parts>& parts() const { return parts_; }

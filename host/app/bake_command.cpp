@@ -5,6 +5,7 @@
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
 #include "host/cloud/input_file.h"
+#include "host/stages/lit_file.h"
 #include <cstdio>
 #include <spdlog/spdlog.h>
 
@@ -12,16 +13,26 @@ namespace pointgi {
 
 namespace {
 
+bool is_las(const BakeOptions& options) {
+  return has_extension(options.output, ".las");
+}
+
 /// Everything that can be refused is refused here, before the work.
 api::Scene checked_scene(const BakeOptions& options) {
-  if (!has_extension(options.output, ".ply"))
-    throw Error(ErrorKind::output, options.output + ": a lit cloud is written as .ply; choose such a name");
+  if (!has_extension(options.output, ".ply") && !is_las(options))
+    throw Error(ErrorKind::output,
+                options.output +
+                    ": a lit cloud is written as .ply, that of a LAS or LAZ file also as .las; choose such a name");
   api::Scene checked = api::Scene::from_file(options.input, overrides_of(options));
   checked.set_bake_quality(options.quality);
   const Scene scene = checked.parts()->description();
   if (options.exposure == "auto")
     throw Error(ErrorKind::usage, "--exposure: of a lit cloud, expected a number of stops, found \"auto\"");
   require_possible_radiosity(scene);
+  if (is_las(options) && !can_write_las(scene))
+    throw Error(ErrorKind::output, options.output +
+                                       ": only what was one LAS or LAZ file, and nothing else, is written as .las; "
+                                       "choose a name that ends in .ply");
   require_outputs(options.input, scene, {{"-o", options.output}, {"--stats", options.stats_file}});
   return checked;
 }
@@ -46,7 +57,11 @@ ExitCode run_bake(const BakeOptions& options) {
   stages.skip("render", "a lit cloud is no picture: it has no camera");
   if (options.sky) light.sky(run.control());
   stages.start("bake");
-  light.write_ply(options.output, {description.render.exposure, options.sky}, run.control());
+  const api::LitFileOptions content{description.render.exposure, options.sky};
+  if (is_las(options))
+    light.write_las(options.output, content, run.control());
+  else
+    light.write_ply(options.output, content, run.control());
   stages.finish(prepared.size(), "points");
   if (!options.stats_file.empty()) {
     Stats stats = stats_of(*light.parts());

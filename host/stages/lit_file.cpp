@@ -1,5 +1,6 @@
 #include "host/stages/lit_file.h"
 #include "host/cloud/input_file.h"
+#include "host/cloud/readers/las_write.h"
 #include "host/cloud/readers/ply_columns.h"
 #include "host/image/srgb.h"
 #include "host/stages/file_answers.h"
@@ -10,7 +11,7 @@ namespace pointgi {
 
 namespace {
 
-constexpr const char* colour_names[] = {"red", "green", "blue"};
+const std::vector<std::string> own_colours = {"red", "green", "blue"};
 constexpr const char* axes[] = {"x", "y", "z"};
 
 std::string albedo_name(const std::string& colour) {
@@ -27,7 +28,8 @@ public:
     std::vector<PointColumn> columns{
         {"lit", FieldType::u8, [this](std::size_t record) { return is_lit(record) ? 1.0 : 0.0; }}};
     for (int c = 0; c < 3 && !lit_.cloud.colour.empty(); ++c)
-      columns.push_back({colour_names[c], FieldType::u8, [this, c](std::size_t record) { return byte(record, c); }});
+      columns.push_back({own_colours[static_cast<std::size_t>(c)], FieldType::u8,
+                         [this, c](std::size_t record) { return byte(record, c); }});
     for (const bool back : {false, true})
       for (const PlyColumn& column : lit_.columns)
         if (!back || answers_.has_backs())
@@ -108,7 +110,7 @@ bool is_ply(const std::string& path) {
 
 void write_ply_again(const std::string& output, const std::string& source, const ResultColumns& results) {
   std::map<std::string, std::string> kept_as;
-  for (const char* colour : colour_names)
+  for (const std::string& colour : own_colours)
     kept_as[colour] = albedo_name(colour);
   write_ply_with_columns(source, output, columns_beside(results, ply_vertex_properties(source)), kept_as);
 }
@@ -122,7 +124,7 @@ std::vector<PointColumn> attributes_of(const PointCloud& cloud) {
     columns.push_back({std::string("n") + axes[k], FieldType::f32,
                        [&cloud, k](std::size_t i) { return static_cast<double>(cloud.normal[i][k]); }});
   for (int c = 0; c < 3 && !cloud.colour.empty(); ++c)
-    columns.push_back({colour_names[c], FieldType::f32,
+    columns.push_back({own_colours[static_cast<std::size_t>(c)], FieldType::f32,
                        [&cloud, c](std::size_t i) { return static_cast<double>(cloud.colour[i][c]); }});
   if (!cloud.radius.empty())
     columns.push_back(
@@ -183,6 +185,46 @@ void write_lit_ply(const std::string& output, const Scene& scene, const Prepared
   const PointCloud cloud = read_cloud(settings.file, {0.0, {}, true}, ignored);
   // A format without names of fields gives attributes alone.
   write_with_results(output, cloud, cloud.fields.empty() ? attributes_of(cloud) : fields_as_columns(cloud), results);
+}
+
+bool can_write_las(const Scene& scene) {
+  return scene.clouds.size() == 1 && scene.shapes.empty() && !scene.clouds[0].points &&
+         (has_extension(scene.clouds[0].file, ".las") || has_extension(scene.clouds[0].file, ".laz"));
+}
+
+void write_lit_las(const std::string& output, const Scene& scene, const PreparedScene& ready, const LitCloud& lit) {
+  const ResultColumns results(scene, ready, lit);
+  const std::string& source = scene.clouds[0].file;
+  const bool coloured = !lit.cloud.colour.empty() && las_holds_colour(source);
+  CloudReport report;
+  const PointCloud cloud =
+      read_cloud(source, {0.0, coloured ? own_colours : std::vector<std::string>(), false}, report);
+  const std::size_t records = report.points_in_file;
+  std::vector<Field> columns;
+  std::vector<Eigen::Vector3f> colour(coloured ? records : 0);
+  for (const PointColumn& column : results.results()) {
+    const auto channel = std::find(own_colours.begin(), own_colours.end(), column.name) - own_colours.begin();
+    if (channel < 3) {
+      for (std::size_t i = 0; i < colour.size(); ++i)
+        colour[i][channel] = static_cast<float>(column.value(i) / 255.0);
+      continue;
+    }
+    Field& field = columns.emplace_back();
+    field.info = {lookup_name(column.name), column.type, 1.0, 0.0};
+    field.values.resize(records);
+    for (std::size_t i = 0; i < records; ++i)
+      field.values[i] = column.value(i);
+  }
+  for (const Field& own : cloud.fields) {
+    const std::string name = albedo_name(lookup_name(own.info.name));
+    if (has_any(report.fields, {name.c_str()})) continue; // of an earlier run: the first ones are the scan's
+    Field& field = columns.emplace_back();
+    field.info = {name, own.info.type, 1.0, 0.0};
+    field.values.resize(records);
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      field.values[cloud.record.empty() ? i : cloud.record[i]] = own.values[i];
+  }
+  write_las_with_columns(source, output, columns, colour);
 }
 
 } // namespace pointgi

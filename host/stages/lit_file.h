@@ -18,4 +18,12 @@ namespace pointgi {
 /// Error(output).
 void write_lit_ply(const std::string& output, const Scene& scene, const PreparedScene& ready, const LitCloud& lit);
 
+/// Whether write_lit_las() can: the scene is one cloud and nothing else, in a file called .las or .laz.
+bool can_write_las(const Scene& scene);
+
+/// Writes LAS: the scene's one cloud, a LAS file, again, with lit and the columns of `lit` as extra bytes (radiosity_r,
+/// …, without scalar_); red, green and blue become the colours of `lit` where the file has colours, its own are kept as
+/// extra bytes albedo_red, … Else as write_lit_ply().
+void write_lit_las(const std::string& output, const Scene& scene, const PreparedScene& ready, const LitCloud& lit);
+
 } // namespace pointgi

@@ -1,8 +1,10 @@
 /// A scan that is baked comes back: its order, all that it had, and an answer for every point.
 #include "host/api/prepared.h"
 #include "host/app/commands.h"
+#include "host/cloud/readers/las_read.h"
 #include "host/cloud/readers/ply.h"
 #include "host/image/srgb.h"
+#include "tests/support/las_bytes.h"
 #include "tests/support/scans.h"
 #include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
@@ -180,6 +182,60 @@ TEST_CASE("bake of a scan twice: one of each column, and the first albedo is kep
   CHECK(twice.substr(0, header) == once.substr(0, header));
   CHECK(twice.size() == once.size());
   CHECK(twice.substr(header + 11, vertex_bytes) == vertex(0));
+}
+
+TEST_CASE("bake of a LAS file gives LAS back, or PLY, with what it had and the light beside it") {
+  LasFile file;
+  file.format = 2;
+  file.scale = {0.001, 0.001, 0.001};
+  file.offset = {654321.0, 4.2e6, 100.0};
+  constexpr std::size_t count = 400;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
+    const double r = std::sqrt(1.0 - z * z), a = 2.399963229728653 * static_cast<double>(i);
+    LasPoint& p = file.points.emplace_back();
+    p.position = {static_cast<std::int32_t>(std::lround(1000.0 * r * std::cos(a))),
+                  static_cast<std::int32_t>(std::lround(1000.0 * r * std::sin(a))),
+                  static_cast<std::int32_t>(std::lround(1000.0 * z))};
+    p.classification = i % 4 == 0 ? 7 : 2;
+    p.intensity = static_cast<std::uint16_t>(i);
+    p.colour = {0xc0c0, 0x8080, 0x4040};
+  }
+  const TemporaryFolder folder;
+  folder.write("scan.las", file.bytes());
+  std::string scene = under_sky("keep = { classification = 2 }");
+  scene.replace(scene.find("scan.ply"), 8, "scan.las");
+  BakeOptions options;
+  options.input = folder.write("scene.toml", scene);
+  options.quiet = options.sky = true;
+  for (const std::string ending : {".las", ".ply"}) {
+    options.output = folder.file("lit" + ending);
+    REQUIRE(run_bake(options) == ExitCode::done);
+    CloudReport report;
+    const ReadRequest all{0.0, {}, true};
+    const PointCloud back =
+        ending == ".las" ? read_las(options.output, all, report) : read_ply(options.output, all, report);
+    const auto field = [&](const std::string& name) {
+      for (const Field& one : back.fields)
+        if (lookup_name(one.info.name) == name) return one.values;
+      FAIL("no field " << name);
+      throw 0;
+    };
+    REQUIRE(back.size() == count);
+    CAPTURE(ending);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d place(0.001 * file.points[i].position[0] + file.offset[0],
+                                  0.001 * file.points[i].position[1] + file.offset[1],
+                                  0.001 * file.points[i].position[2] + file.offset[2]);
+      REQUIRE((back.position[i] - place).norm() < 1e-8); // of doubles of 4e6 the last bits
+      REQUIRE(field("intensity")[i] == static_cast<double>(i));
+      REQUIRE(field("albedo_red")[i] == 0xc0c0);
+      REQUIRE(field("lit")[i] == (i % 4 == 0 ? 0.0 : 1.0));
+      REQUIRE((field("radiosity_r")[i] > 1.0) == (i % 4 != 0)); // pi times an albedo of 0.53
+      REQUIRE((field("sky")[i] > 0.8) == (i % 4 != 0));
+      REQUIRE((field("red")[i] > 0.0) == (i % 4 != 0));
+    }
+  }
 }
 
 TEST_CASE("a cloud in memory comes back in its own order") {
