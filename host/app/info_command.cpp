@@ -22,6 +22,8 @@ void print_report(const std::string& file, const CloudReport& report) {
   std::printf("%zu dropped\n", report.points_dropped);
   std::printf("  triangles   %zu\n", report.triangles);
   std::printf("  normals     %s\n", report.normals_from.c_str());
+  if (!report.kind_reason.empty())
+    std::printf("  kind        %s: %s\n", name_of(report.kind), report.kind_reason.c_str());
   std::printf("  radii       %s\n", report.radii_from.c_str());
   std::printf("  areas       %s\n", report.areas_from.c_str());
   std::size_t widest = 0;

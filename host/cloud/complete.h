@@ -1,6 +1,7 @@
 #pragma once
 /// From a cloud as the file has it to one with unit normals, radii and effective areas.
 #include "host/cloud/point_cloud.h"
+#include "host/cloud/strays.h"
 #include <optional>
 
 namespace pointgi {
@@ -17,10 +18,15 @@ struct CompleteOptions {
   NormalSource normals = NormalSource::automatic;
   RadiusSource radii = RadiusSource::automatic;
   std::optional<Eigen::Vector3d> viewpoint; ///< the sensor: estimated normals are turned towards it
+  StrayPolicy strays = StrayPolicy::drop;
+  std::vector<Eigen::Vector3d> eyes; ///< camera and lamps of the scene, the file's coordinates: they see fronts
+  std::optional<Eigen::Vector3d> up; ///< unit, the file's coordinates: the user's word; absent: CloudReport::up
 };
 
-/// Drops points that are not finite or have radius <= 0 in the file, then fills normal, radius and area.
-/// Afterwards all three arrays are as long as `position`, normals are unit, radii and areas > 0.
+/// Drops points that are not finite or have radius <= 0 in the file, and strays (host/cloud/strays.h), then fills
+/// normal, radius, area and structure; normals that are given are kept, missing ones (zero, NaN) estimated.
+/// Afterwards all four arrays are as long as `position`, normals are unit, radii and areas > 0. `report` receives, too,
+/// the kind of cloud and which way is up where the kind or the format shows it.
 /// Throws Error(input) when no point is left. Ends in seconds for any input (coincident, collinear, one far outlier).
 void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudReport& report);
 

@@ -21,15 +21,13 @@ bool positive(float value) {
 } // namespace
 
 std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& options) {
-  const bool use_normal = !cloud.normal.empty() && options.normals != NormalSource::estimate;
   const bool use_radius = !cloud.radius.empty() && options.radii != RadiusSource::estimate;
   const auto usable = [&](std::size_t i) {
     if (!cloud.position[i].allFinite()) return false;
     if (!cloud.colour.empty() && !cloud.colour[i].allFinite()) return false;
     if (!cloud.area.empty() && !positive(cloud.area[i])) return false;
     if (!cloud.opacity.empty() && !(cloud.opacity[i] >= least_opacity)) return false;
-    if (use_radius && !positive(cloud.radius[i])) return false;
-    return !use_normal || (cloud.normal[i].allFinite() && std::isnormal(cloud.normal[i].stableNorm()));
+    return !use_radius || positive(cloud.radius[i]);
   };
 
   return keep_points(cloud, usable);

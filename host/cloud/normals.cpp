@@ -10,6 +10,13 @@ namespace {
 
 constexpr unsigned pca_neighbours = 18;  // with the weights below about as smooth as 12 equal ones
 constexpr unsigned wide_neighbours = 72; // four scan lines, where 18 are all on one
+// Where noise hides the surface wider neighbourhoods show it again: as many neighbours as it takes, as long as each
+// step makes the plane clearly flatter for its size. Noise gives 0.71 for twice the neighbours, an edge 1, a curve 2.
+constexpr std::array<unsigned, 4> scales = {pca_neighbours, 36, 72, 144};
+constexpr double noise_like = 0.06; // roughness from which a wider look is worth its time
+constexpr double flatter = 0.88;
+constexpr double formless = 0.3; // least variance over the middle one; a sheet whose noise is its spacing: 0.15 at most
+constexpr float lively = 0.5f;   // cosine under which neighbours' normals are another face's
 constexpr float another_piece =
     4.0f; // times the median distance of the neighbours: beyond, a fragment ends and something else is
 constexpr double flat_enough = 0.01; // ratio of the middle to the largest variance under which points are a line
@@ -24,12 +31,15 @@ constexpr double on_plane = 0.02;       // distance from a neighbour's plane tha
 struct Plane {
   Eigen::Vector3d normal;
   double middle_to_large; ///< ratio of variances
+  double least_to_middle;
   double roughness;
 };
 
 struct Estimate {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   float roughness = 0;
+  bool noisy = false; ///< the plane was found in more neighbours than usual
+  Structure structure = Structure::surface;
 };
 
 /// Each neighbour counts with 1 - d²/d_k²: the last one has no weight, so which of several equally far ones the search
@@ -55,8 +65,9 @@ Plane fit_plane(const Sites& sites, std::uint32_t site, const Neighbour* neighbo
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
   const double large = solver.eigenvalues()[2];
-  return {solver.eigenvectors().col(0), large > 0 ? std::max(0.0, solver.eigenvalues()[1]) / large : 0.0,
-          std::sqrt(std::max(0.0, solver.eigenvalues()[0]))};
+  const double middle = std::max(0.0, solver.eigenvalues()[1]), least = std::max(0.0, solver.eigenvalues()[0]);
+  return {solver.eigenvectors().col(0), large > 0 ? middle / large : 0.0, middle > 0 ? least / middle : 0.0,
+          std::sqrt(least)};
 }
 
 /// The coordinate axis that is most across, made exactly perpendicular: the same for all points of a line.
@@ -75,20 +86,40 @@ unsigned neighbours_in_piece(const Sites& sites, std::uint32_t site, unsigned k,
   return count;
 }
 
+/// What the neighbourhood is made of, by its variances.
+Structure structure_of(const Plane& plane) {
+  constexpr double thin = 0.01;
+  if (plane.middle_to_large < thin) return Structure::line;
+  return plane.least_to_middle > formless ? Structure::volume : Structure::surface;
+}
+
 Estimate estimate(const Sites& sites, std::uint32_t site) {
-  std::array<Neighbour, wide_neighbours> neighbours;
+  std::array<Neighbour, scales.back()> neighbours;
   unsigned count = neighbours_in_piece(sites, site, pca_neighbours, neighbours.data());
   if (count == 0) return {};
   Plane plane = fit_plane(sites, site, neighbours.data(), count);
+  bool noisy = false;
   if (plane.middle_to_large < flat_enough && sites.size() > pca_neighbours + 1) {
     count = neighbours_in_piece(sites, site, wide_neighbours, neighbours.data());
     plane = fit_plane(sites, site, neighbours.data(), count);
+  } else {
+    for (std::size_t scale = 1; scale < scales.size() && plane.roughness > noise_like && sites.size() > scales[scale];
+         ++scale) {
+      const unsigned wider = neighbours_in_piece(sites, site, scales[scale], neighbours.data());
+      const Plane next = fit_plane(sites, site, neighbours.data(), wider);
+      // Among noise as large as the neighbourhood nothing is flat yet: the scale after the next may tell.
+      if (next.roughness > (plane.least_to_middle > formless ? 1.0 : flatter) * plane.roughness) break;
+      plane = next;
+      count = wider;
+      noisy = true;
+    }
   }
   Eigen::Vector3d normal = plane.normal;
   if (plane.middle_to_large < on_a_line)
     normal = across((sites.position(neighbours[count - 1].site) - sites.position(site)).normalized());
   if (!(normal.squaredNorm() > 0.5) || !normal.allFinite()) normal = Eigen::Vector3d::UnitZ();
-  return {normal.normalized().cast<float>(), static_cast<float>(plane.roughness)};
+  return {normal.normalized().cast<float>(), static_cast<float>(plane.roughness), noisy,
+          count < pca_neighbours ? Structure::surface : structure_of(plane)};
 }
 
 /// Beside an edge: the normal of the flattest neighbour whose plane the site lies on, so that edges stay sharp and both
@@ -113,13 +144,37 @@ Eigen::Vector3f sharpened(const Sites& sites, const std::vector<Estimate>& estim
   return best.normal;
 }
 
+/// Normals of noisy places, averaged with those of their neighbours that do not belong to another face. Signs do not
+/// matter.
+std::vector<Eigen::Vector3f> evened(const Sites& sites, const std::vector<Estimate>& estimates,
+                                    const std::vector<Eigen::Vector3f>& normals) {
+  std::vector<Eigen::Vector3f> result(normals);
+  parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::array<Neighbour, scales[1]> near;
+    for (std::size_t s = begin; s < end; ++s) {
+      if (!estimates[s].noisy) continue;
+      const unsigned count = sites.nearest(static_cast<std::uint32_t>(s), scales[1], near.data());
+      Eigen::Vector3f sum = normals[s];
+      for (unsigned j = 0; j < count; ++j) {
+        const Eigen::Vector3f& other = normals[near[j].site];
+        const float cosine = other.dot(normals[s]);
+        if (std::abs(cosine) < lively) continue;
+        const float weight = 1.0f - near[j].distance2 / std::max(near[count - 1].distance2, 1e-30f);
+        sum += std::copysign(weight, cosine) * other;
+      }
+      result[s] = sum.normalized();
+    }
+  });
+  return result;
+}
+
 } // namespace
 
 Eigen::Vector3f estimate_normal(const Sites& sites, std::uint32_t site) {
   return estimate(sites, site).normal;
 }
 
-std::vector<Eigen::Vector3f> estimate_normals(const Sites& sites) {
+std::vector<Eigen::Vector3f> estimate_normals(const Sites& sites, std::vector<Structure>* structure) {
   std::vector<Estimate> estimates(sites.size());
   parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
@@ -128,8 +183,18 @@ std::vector<Eigen::Vector3f> estimate_normals(const Sites& sites) {
   std::vector<Eigen::Vector3f> normals(sites.size());
   parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
-      normals[s] = sharpened(sites, estimates, static_cast<std::uint32_t>(s));
+      normals[s] =
+          estimates[s].noisy ? estimates[s].normal : sharpened(sites, estimates, static_cast<std::uint32_t>(s));
   });
+  const auto is_noisy = [](const Estimate& e) { return e.noisy; };
+  if (std::any_of(estimates.begin(), estimates.end(), is_noisy))
+    for (int pass = 0; pass < 2; ++pass)
+      normals = evened(sites, estimates, normals);
+  if (structure != nullptr) {
+    structure->resize(sites.size());
+    for (std::uint32_t s = 0; s < sites.size(); ++s)
+      (*structure)[s] = estimates[s].structure;
+  }
   return normals;
 }
 

@@ -10,17 +10,14 @@ namespace pointgi {
 
 namespace {
 
-// A Kinect's frame reaches 0.995, airborne lidar 0.67, closed objects seen from outside 0.5 to 0.75, a photogrammetric
-// cloud seen from an arbitrary origin 0.92.
-constexpr double depth_image_threshold = 0.96;
-constexpr std::size_t depth_image_sample = 60'000; // sites looked at; enough to tell sheets apart that matter
-constexpr double farthest_sensor = 10.0;           // times the size of the cloud
-constexpr double near_in_space = 6.0;              // times the distance of the 8th neighbour: slanted walls stretch it
+constexpr double farthest_sensor = 10.0; // times the size of the cloud
+constexpr unsigned patch_samples = 200;  // sites of a patch that are asked what they see
+constexpr double clear_vote = 0.15;      // of the votes of a patch: less is nearly a tie
+constexpr std::size_t smallest_patch = 30;
 
 // |sum of A n| / sum of A: 0 for closed surfaces, 1 for planes, 1/2 for a hemisphere.
 constexpr double open_surface = 0.5;
 constexpr double clearly_convex = 0.4; // of TreeShape::outward, for open surfaces: a dome, the scan of a statue's front
-constexpr double fragment_share = 0.01; // trees with fewer sites than this share of the largest are fragments
 constexpr unsigned fragment_votes = 32;
 
 /// What decides the side of one tree.
@@ -131,86 +128,227 @@ std::vector<int> fragment_signs(const Sites& sites, const SpanningForest& forest
   return signs;
 }
 
-std::string turn_trees(const Sites& sites, std::vector<Eigen::Vector3f>& normals) {
+/// Some of the sites of each patch, evenly along the curve.
+std::vector<std::vector<std::uint32_t>> sample_patches(const SpanningForest& forest,
+                                                       const std::vector<TreeShape>& shapes) {
+  std::vector<std::vector<std::uint32_t>> samples(forest.trees);
+  std::vector<std::size_t> seen(forest.trees, 0);
+  for (std::uint32_t s = 0; s < forest.tree.size(); ++s) {
+    const std::uint32_t t = forest.tree[s];
+    const std::size_t step = std::max<std::size_t>(1, shapes[t].sites / patch_samples);
+    if (seen[t]++ % step == 0) samples[t].push_back(s);
+  }
+  return samples;
+}
+
+/// What camera and lamps see of a patch: 1 its fronts, -1 its backs, 0 neither for sure.
+double vote_of_eyes(const Sites& sites, const std::vector<Eigen::Vector3d>& eyes, const FreeSpace& space,
+                    const std::vector<std::uint32_t>& sample, const std::vector<Eigen::Vector3f>& normals) {
+  double votes = 0, all = 0;
+  for (const std::uint32_t s : sample)
+    for (const Eigen::Vector3d& eye : eyes) {
+      const Eigen::Vector3d way = eye - sites.position(s);
+      const double cosine = normals[s].cast<double>().dot(way) / std::max(way.norm(), 1e-30);
+      if (std::abs(cosine) < 0.1 || !space.clear(sites.position(s), eye)) continue;
+      votes += cosine;
+      all += std::abs(cosine);
+    }
+  const double enough = 0.02 * static_cast<double>(sample.size());
+  return all > enough ? votes / all : 0.0;
+}
+
+/// From which side of a patch more of the free space is seen: 1 its fronts, -1 its backs (Takayama et al. 2014).
+double vote_of_space(const Sites& sites, const FreeSpace& space, const std::vector<std::uint32_t>& sample,
+                     const std::vector<Eigen::Vector3f>& normals) {
+  double front = 0, back = 0;
+  for (const std::uint32_t s : sample) {
+    const Eigen::Vector3d n = normals[s].cast<double>();
+    front += space.openness(sites.position(s), n);
+    back += space.openness(sites.position(s), -n);
+  }
+  return front + back > 0.05 * static_cast<double>(sample.size()) ? (front - back) / (front + back) : 0.0;
+}
+
+/// 1 to leave a patch, -1 to turn it, 0: nothing tells.
+int side_of(const TreeShape& shape, double eyes, double space, bool inward) {
+  if (std::abs(eyes) > clear_vote) return eyes < 0 ? -1 : 1;
+  const bool closed = shape.openness() < 0.1 && std::abs(shape.outward()) > 0.2;
+  if (closed) return (shape.volume < 0) != inward ? -1 : 1;
+  if (std::abs(space) > clear_vote) return (space < 0) != inward ? -1 : 1;
+  return 0;
+}
+
+/// What single places see: 1 only their front faces open space, -1 only their back does, 0 anything else.
+std::vector<int> votes_of_places(const Sites& sites, const FreeSpace& space, std::uint32_t step,
+                                 const std::vector<Eigen::Vector3f>& normals) {
+  constexpr double shut = 0.05, open = 0.3;
+  std::vector<int> votes((sites.size() + step - 1) / step);
+  parallel_ranges(votes.size(), 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto s = static_cast<std::uint32_t>(v * step);
+      const Eigen::Vector3d n = normals[s].cast<double>();
+      const double front = space.openness(sites.position(s), n), back = space.openness(sites.position(s), -n);
+      votes[v] = front > open && back < shut ? 1 : back > open && front < shut ? -1 : 0;
+    }
+  });
+  return votes;
+}
+
+/// Islands that the chain of neighbours left on the wrong side, as on the terraces of voxels: turned where all places
+/// around that see open space see it at their backs. Returns how many sites were.
+std::size_t turn_islands(const Sites& sites, const FreeSpace& space, std::vector<Eigen::Vector3f>& normals) {
+  constexpr std::uint32_t most_votes = 200'000;
+  constexpr unsigned jury = 12;
+  const std::uint32_t step = (sites.size() + most_votes - 1) / most_votes;
+  const std::vector<int> votes = votes_of_places(sites, space, step, normals);
+  if (std::count(votes.begin(), votes.end(), -1) == 0) return 0;
+  std::vector<Eigen::Vector3d> places;
+  for (std::size_t v = 0; v < votes.size(); ++v)
+    places.push_back(sites.position(static_cast<std::uint32_t>(v * step)));
+  const Sites voters(places);
+  std::vector<char> turn(sites.size(), 0);
+  parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::array<Neighbour, jury> near;
+    for (std::size_t s = begin; s < end; ++s) {
+      const Eigen::Vector3d& place = sites.position(static_cast<std::uint32_t>(s));
+      const unsigned count = voters.nearest_to(voters.to_local(place), jury, near.data());
+      int against = 0, with = 0;
+      for (unsigned j = 0; j < count; ++j) {
+        const std::uint32_t v = *voters.points(near[j].site).begin();
+        const float cosine = normals[s].dot(normals[std::size_t(v) * step]);
+        if (std::abs(cosine) < 0.5f) continue;
+        const int vote = cosine > 0 ? votes[v] : -votes[v];
+        against += vote < 0;
+        with += vote > 0;
+      }
+      turn[s] = against > 0 && against > 3 * with;
+    }
+  });
+  for (std::uint32_t s = 0; s < sites.size(); ++s)
+    if (turn[s]) normals[s] = -normals[s];
+  return static_cast<std::size_t>(std::count(turn.begin(), turn.end(), 1));
+}
+
+Orientation turn_patches(const Sites& sites, const OrientationEvidence& evidence, const FreeSpace& space,
+                         std::vector<Eigen::Vector3f>& normals) {
   const SpanningForest forest = agree_normals(sites, normals);
   const std::vector<TreeShape> shapes = tree_shapes(sites, forest, normals);
+  const auto samples = sample_patches(forest, shapes);
+  std::vector<Eigen::Vector3d> eyes;
+  for (const Eigen::Vector3d& eye : evidence.eyes)
+    eyes.push_back(sites.to_local(eye));
+  const bool inward = evidence.kind.kind == CloudKind::room;
+  std::vector<int> side(forest.trees, 0);
+  std::vector<char> decided(forest.trees, 0), by_eyes(forest.trees, 0);
+  parallel_ranges(forest.trees, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      if (shapes[t].sites < smallest_patch && forest.trees > 1) continue;
+      const double seen = eyes.empty() ? 0.0 : vote_of_eyes(sites, eyes, space, samples[t], normals);
+      by_eyes[t] = std::abs(seen) > clear_vote;
+      side[t] = side_of(shapes[t], seen, by_eyes[t] ? 0.0 : vote_of_space(sites, space, samples[t], normals), inward);
+      decided[t] = side[t] != 0;
+    }
+  });
   const auto by_sites = [](const TreeShape& a, const TreeShape& b) { return a.sites < b.sites; };
-  const TreeShape& largest = *std::max_element(shapes.begin(), shapes.end(), by_sites);
-  std::vector<char> large(shapes.size()), flip(shapes.size(), 0);
-  for (std::size_t t = 0; t < shapes.size(); ++t) {
-    large[t] = static_cast<double>(shapes[t].sites) >= fragment_share * static_cast<double>(largest.sites);
-    // A small body of its own (a bead beside a bust) is told from a fragment by being closed.
-    if (shapes[t].sites >= 64 && shapes[t].openness() < 0.1 && std::abs(shapes[t].outward()) > 0.5) large[t] = 1;
-    if (large[t]) flip[t] = must_flip(shapes[t]);
+  const auto largest =
+      static_cast<std::size_t>(std::max_element(shapes.begin(), shapes.end(), by_sites) - shapes.begin());
+  if (std::count(decided.begin(), decided.end(), 1) == 0) {
+    side[largest] = must_flip(shapes[largest]) ? -1 : 1;
+    decided[largest] = 1;
   }
   for (std::uint32_t s = 0; s < sites.size(); ++s)
-    if (flip[forest.tree[s]]) normals[s] = -normals[s];
-  if (std::find(large.begin(), large.end(), 0) != large.end()) {
-    const std::vector<int> signs = fragment_signs(sites, forest, large, normals);
+    if (side[forest.tree[s]] < 0) normals[s] = -normals[s];
+  std::size_t in_doubt = 0;
+  if (std::find(decided.begin(), decided.end(), 0) != decided.end()) {
+    const std::vector<int> signs = fragment_signs(sites, forest, decided, normals);
     for (std::uint32_t s = 0; s < sites.size(); ++s) {
       const std::uint32_t t = forest.tree[s];
-      if (!large[t] && (signs[t] != 0 ? signs[t] < 0 : must_flip(shapes[t]))) normals[s] = -normals[s];
+      if (decided[t]) continue;
+      in_doubt += signs[t] == 0;
+      if (signs[t] != 0 ? signs[t] < 0 : must_flip(shapes[t])) normals[s] = -normals[s];
     }
   }
-  return description(largest);
+  if (!inward && std::count(by_eyes.begin(), by_eyes.end(), 1) == 0) turn_islands(sites, space, normals);
+  Orientation result;
+  result.doubt = static_cast<double>(in_doubt) / static_cast<double>(sites.size());
+  result.how = by_eyes[largest] ? "towards the scene's camera and lights"
+               : inward         ? "inwards, as a room's"
+                                : description(shapes[largest]);
+  return result;
+}
+
+/// Each site to the station that saw its first point; without that knowledge to the nearest that can see it.
+void turn_towards_stations(const Sites& sites, const OrientationEvidence& evidence,
+                           const std::vector<Eigen::Vector3d>& stations, const FreeSpace& space,
+                           std::vector<Eigen::Vector3f>& normals) {
+  parallel_ranges(sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Eigen::Vector3d& place = sites.position(static_cast<std::uint32_t>(s));
+      const std::uint32_t point = *sites.points(static_cast<std::uint32_t>(s)).begin();
+      Eigen::Vector3d station = stations.front();
+      if (!evidence.station.empty()) {
+        station = stations[std::min<std::size_t>(evidence.station[point], stations.size() - 1)];
+      } else if (stations.size() > 1) {
+        double nearest = 1e300;
+        for (const Eigen::Vector3d& other : stations) {
+          const double distance = (other - place).norm() * (space.clear(place, other) ? 1.0 : 1e6);
+          if (distance < nearest) nearest = distance, station = other;
+        }
+      }
+      if (normals[s].cast<double>().dot(station - place) < 0) normals[s] = -normals[s];
+    }
+  });
+}
+
+/// Height fields: what is nearly upright goes with the patch it belongs to.
+void turn_upwards(const Sites& sites, const Eigen::Vector3d& up, std::vector<Eigen::Vector3f>& normals) {
+  const Eigen::Vector3f direction = up.cast<float>();
+  for (std::uint32_t s = 0; s < sites.size(); ++s)
+    if (normals[s].dot(direction) < 0.0f) normals[s] = -normals[s];
+}
+
+std::string axis_name(const Eigen::Vector3d& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return std::string(direction[axis] < 0 ? "-" : "") + "xyz"[axis];
 }
 
 } // namespace
 
-double depth_image_share(const Sites& sites, const Eigen::Vector3d& sensor) {
-  if (sites.size() < 100) return 0;
-  const std::size_t step = (sites.size() + depth_image_sample - 1) / depth_image_sample;
-  std::vector<Eigen::Vector3d> positions, directions;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  std::vector<double> distances;
-  for (std::size_t s = 0; s < sites.size(); s += step) {
-    const Eigen::Vector3d offset = sites.position(static_cast<std::uint32_t>(s)) - sensor;
-    if (!(offset.norm() > 0)) continue;
-    positions.push_back(offset);
-    directions.push_back(offset.normalized());
-    distances.push_back(offset.norm());
-    mean += directions.back();
-  }
-  if (positions.size() < 100 || !(mean.norm() > 0)) return 0;
-  mean.normalize();
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  if (*middle > farthest_sensor * 4.0) return 0; // half of the cloud lies within 1 local unit of its median
-  // A surface all around is as likely an object about the origin as a room scanned from its middle: no decision here.
-  const auto behind =
-      std::count_if(directions.begin(), directions.end(), [&](const auto& d) { return d.dot(mean) < 0.05; });
-  if (static_cast<std::size_t>(behind) * 1000 > directions.size()) return 0;
-
-  const Sites in_space(positions), as_seen(directions);
-  if (as_seen.size() < 100) return 0; // a line through the sensor
-  std::vector<char> agrees(as_seen.size());
-  parallel_ranges(as_seen.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::array<Neighbour, 8> near;
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto site = static_cast<std::uint32_t>(s);
-      const std::uint32_t point = *as_seen.points(site).begin();
-      as_seen.nearest(site, 1, near.data());
-      const Eigen::Vector3d& other = positions[*as_seen.points(near[0].site).begin()];
-      const unsigned count = in_space.nearest_to(in_space.to_local(positions[point]), 8, near.data());
-      const double reach = std::sqrt(static_cast<double>(near[count - 1].distance2)) * in_space.unit();
-      agrees[s] = (other - positions[point]).norm() <= near_in_space * reach;
-    }
-  });
-  return static_cast<double>(std::count(agrees.begin(), agrees.end(), 1)) / static_cast<double>(agrees.size());
+bool may_have_seen(const Sites& sites, const Eigen::Vector3d& station) {
+  std::vector<double> distance(sites.size());
+  const Eigen::Vector3d place = sites.to_local(station);
+  for (std::uint32_t s = 0; s < sites.size(); ++s)
+    distance[s] = (sites.position(s) - place).norm();
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  return *middle <= farthest_sensor * 4.0; // half of the cloud lies within 1 local unit of its median
 }
 
-std::string orient_normals(const Sites& sites, const std::optional<Eigen::Vector3d>& viewpoint,
+Orientation orient_normals(const Sites& sites, const OrientationEvidence& evidence, const FreeSpace& space,
                            std::vector<Eigen::Vector3f>& normals) {
-  if (viewpoint) {
-    turn_towards(sites, sites.to_local(*viewpoint), normals);
-    return "towards the viewpoint";
+  if (evidence.viewpoint) {
+    turn_towards(sites, sites.to_local(*evidence.viewpoint), normals);
+    return {"towards the viewpoint", 0.0};
   }
-  const Eigen::Vector3d origin = sites.to_local(Eigen::Vector3d::Zero());
-  if (depth_image_share(sites, origin) > depth_image_threshold) {
-    turn_towards(sites, origin, normals);
-    return "towards the sensor at the origin";
+  if (!evidence.stations.empty()) {
+    std::vector<Eigen::Vector3d> stations;
+    for (const Eigen::Vector3d& station : evidence.stations)
+      stations.push_back(sites.to_local(station));
+    turn_towards_stations(sites, evidence, stations, space, normals);
+    return {stations.size() == 1 ? "towards the scanner"
+                                 : "towards the " + std::to_string(stations.size()) + " scanner positions",
+            0.0};
   }
-  return turn_trees(sites, normals);
+  if (evidence.kind.sensor) {
+    turn_towards(sites, sites.to_local(*evidence.kind.sensor), normals);
+    return {"towards the sensor at the origin", 0.0};
+  }
+  if (evidence.kind.kind == CloudKind::terrain) {
+    turn_upwards(sites, *evidence.kind.up, normals);
+    return {"upwards along " + axis_name(*evidence.kind.up), 0.0};
+  }
+  return turn_patches(sites, evidence, space, normals);
 }
 
 } // namespace pointgi

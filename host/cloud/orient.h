@@ -1,24 +1,31 @@
 #pragma once
-/// Which side of the surface estimated normals are on.
-#include "host/cloud/knn.h"
-#include <optional>
-#include <string>
+/// Which side of a surface is its front.
+#include "host/cloud/kind.h"
 
 namespace pointgi {
 
-/// Turns unit normals of arbitrary sign, a value a site, to one side of the surface. Returns how that was decided, as
-/// shown to the user: "towards the viewpoint", "towards the sensor at the origin", "outwards", "upwards along z", ...
-///
-/// A sensor (`viewpoint`, world units; or the origin, where the cloud is a depth image seen from there) saw every
-/// point, so each normal is turned towards it. Otherwise neighbours are made to agree along a minimum spanning forest
-/// (Hoppe et al. 1992), and each tree is turned as a whole: closed surfaces outwards, open flat ones (airborne lidar)
-/// upwards along the axis in which they are thinnest, small fragments like the nearest larger piece.
-std::string orient_normals(const Sites& sites, const std::optional<Eigen::Vector3d>& viewpoint,
+/// What is known of who saw a cloud, world units.
+struct OrientationEvidence {
+  std::optional<Eigen::Vector3d> viewpoint; ///< the user's word: obeyed
+  std::vector<Eigen::Vector3d> stations;    ///< positions of scanners ...
+  std::vector<std::uint16_t> station;       ///< ... and which of them saw each point; empty: not known
+  std::vector<Eigen::Vector3d> eyes;        ///< camera and lamps of the scene: what they see should face them
+  RecognisedKind kind;
+};
+
+struct Orientation {
+  std::string how;  ///< "outwards", "towards the viewpoint", "upwards along z" ...
+  double doubt = 0; ///< share of the sites whose side was nearly a tie
+};
+
+/// Turns the signs of unit normals, a value a site. By, in this order: the viewpoint; the stations, each point to the
+/// one that saw it; the sensor or the up direction of the recognised kind; else patches that agree along a spanning
+/// forest, each turned by what the eyes see of it, by the volume that it encloses, by the side from which more of the
+/// free space is seen, or by its neighbours. `space`: of the same sites.
+Orientation orient_normals(const Sites& sites, const OrientationEvidence& evidence, const FreeSpace& space,
                            std::vector<Eigen::Vector3f>& normals);
 
-/// Share of sites, 0 to 1, whose nearest neighbour as seen from `sensor` (local units) is near in space too. About 1
-/// for what a depth camera at `sensor` records, about 1/2 where a front and a back lie behind one another. 0 when the
-/// sensor is inside the cloud, or so far off (over ten times its size) that nobody would have scanned it from there.
-double depth_image_share(const Sites& sites, const Eigen::Vector3d& sensor);
+/// Whether a scanner at `station` can have seen the points at all: nearer than ten times their size. World units.
+bool may_have_seen(const Sites& sites, const Eigen::Vector3d& station);
 
 } // namespace pointgi

@@ -15,6 +15,7 @@ enum class Structure : std::uint8_t {
   surface,
   line,   ///< a cable, a twig
   volume, ///< foliage, or noise through and through
+  sheet,  ///< a surface without thickness, both sides of which are meant: leaves, faces stored both ways round
   stray   ///< its neighbours are nearer to one another than it is to them
 };
 

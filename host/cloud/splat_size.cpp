@@ -52,6 +52,14 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
+/// Whether two neighbours on one surface have contrary signs. Those of a thin wall's two sides, back to back or, across
+/// a gap, face to face, are right as they are.
+bool oppose(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& e) {
+  if (static_cast<double>(a.dot(b)) > opposite_cosine) return false;
+  const float above = a.dot(e), below = b.dot(e), clear = 0.02f * e.norm();
+  return !(above > clear && below < -clear) && !(above < -clear && below > clear);
+}
+
 void rein_in_isolated(const Sites& sites, std::vector<float>& spacing) {
   const float suspicious = median(spacing) * static_cast<float>(isolated_factor);
   const std::vector<float> own = spacing;
@@ -263,7 +271,7 @@ float positive_float(double value) {
 
 } // namespace
 
-SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>& normals) {
+SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, bool reined_in) {
   SiteSpacing result;
   result.spacing.assign(sites.size(),
                         static_cast<float>(std::sqrt(2.0) / splat_overlap)); // a square for a disc of radius 1
@@ -276,20 +284,20 @@ SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>&
       const auto site = static_cast<std::uint32_t>(s);
       const unsigned count = sites.nearest(site, spacing_neighbours, near.data());
       result.spacing[s] = std::max(spacing_of(near.data(), count), 1e-18f);
+      if (normals.empty()) continue;
       const Eigen::Vector3f& normal = normals[*sites.points(site).begin()];
       for (unsigned j = 0; j < count; ++j) {
         const Eigen::Vector3f e = (sites.position(near[j].site) - sites.position(site)).cast<float>();
         if (std::abs(e.dot(normal)) > 0.5f * e.norm()) continue; // above or below, not beside
         ++pairs_here;
-        opposite_here +=
-            static_cast<double>(normal.dot(normals[*sites.points(near[j].site).begin()])) < opposite_cosine;
+        opposite_here += oppose(normal, normals[*sites.points(near[j].site).begin()], e);
       }
     }
     pairs += pairs_here;
     opposite += opposite_here;
   });
   if (pairs > 0) result.opposite = static_cast<double>(opposite) / static_cast<double>(pairs);
-  rein_in_isolated(sites, result.spacing);
+  if (reined_in) rein_in_isolated(sites, result.spacing);
   return result;
 }
 

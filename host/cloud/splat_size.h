@@ -10,9 +10,10 @@ struct SiteSpacing {
   double opposite = 0; ///< share, 0 .. 1, of neighbours side by side on the surface whose normals oppose each other
 };
 
-/// `normals`: unit, a value a point. Sites far out of proportion with their neighbours (isolated ones) get those
-/// neighbours' spacing. A lone site has one that makes its splats' radius 1.
-SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>& normals);
+/// `normals`: unit, a value a point; empty: `opposite` is not looked for. Sites far out of proportion with their
+/// neighbours (isolated ones) get those neighbours' spacing, if `reined_in`. A lone site has one that makes its splats'
+/// radius 1.
+SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, bool reined_in = true);
 
 struct SplatSizes {
   std::vector<float> radius; ///< a value a point, world units, > 0

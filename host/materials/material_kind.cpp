@@ -75,7 +75,14 @@ void load_diffuse_keys(const TableReader& table, MaterialSettings& material) {
   material.flags |= MATERIAL_REFLECTS_DIFFUSELY;
   load_albedo(table, material);
   if (const auto emission = table.vector3("emission", limits::light)) material.emission = *emission;
-  if (table.boolean("two_sided").value_or(false)) material.flags |= MATERIAL_TWO_SIDED;
+  const toml::node* sides = table.find("two_sided");
+  if (sides == nullptr || (sides->is_string() && table.choice("two_sided", {"auto"}))) {
+    material.one_sided = false; // points without a side have two all the same
+  } else if (*table.boolean("two_sided")) {
+    material.flags |= MATERIAL_TWO_SIDED;
+  } else {
+    material.one_sided = true;
+  }
   if (const auto space = table.choice("colour_space", {"srgb", "linear"}))
     material.colour_space = *space == "srgb" ? ColourSpace::srgb : ColourSpace::linear;
 }

@@ -41,6 +41,12 @@ NormalSource normals_called(const std::string& name) {
   return NormalSource::automatic;
 }
 
+StrayPolicy strays_called(const std::string& name) {
+  if (name == "keep") return StrayPolicy::keep;
+  if (name == "shrink") return StrayPolicy::shrink;
+  return StrayPolicy::drop;
+}
+
 RadiusSource radii_called(const std::string& name) {
   if (name == "file") return RadiusSource::file;
   if (name == "estimate") return RadiusSource::estimate;
@@ -63,7 +69,7 @@ void load_radius(const TableReader& table, CloudSettings& cloud) {
 CloudSettings load_cloud(const TableReader& table, const MaterialNames& materials, const std::string& scene_file,
                          const CloudsInMemory& in_memory) {
   table.allow_only({"file", "material", "scale", "rotate_deg", "translate", "radius", "normals", "viewpoint", "spacing",
-                    "keep", "crop", "clip", "voxel"});
+                    "strays", "keep", "crop", "clip", "voxel"});
   CloudSettings cloud;
   cloud.place = table.place();
   const auto given = in_memory.find(table.text("file").value_or(""));
@@ -76,6 +82,7 @@ CloudSettings load_cloud(const TableReader& table, const MaterialNames& material
   load_radius(table, cloud);
   if (const auto normals = table.choice("normals", {"auto", "file", "estimate", "flip"}))
     cloud.normals = normals_called(*normals);
+  if (const auto strays = table.choice("strays", {"drop", "shrink", "keep"})) cloud.strays = strays_called(*strays);
   cloud.viewpoint = table.vector3("viewpoint", limits::coordinate);
   if (const auto spacing = table.number("spacing", limits::length)) cloud.spacing = *spacing;
   cloud.selection = load_selection(table);

@@ -20,6 +20,21 @@ bool alike(const Splat& a, const Splat& b) {
   return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] > alike_cosine;
 }
 
+bool opposite(const Splat& a, const Splat& b) {
+  constexpr float opposite_cosine = -0.9f;
+  return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] < opposite_cosine;
+}
+
+/// From indices before the splats that are `gone` go to those after, ascending.
+void renumber(std::vector<CoincidentSides>& pairs, const std::vector<bool>& gone) {
+  std::sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.one < b.one; });
+  std::vector<std::uint32_t> number(pairs.empty() ? 0 : gone.size());
+  for (std::uint32_t i = 0, kept = 0; i < number.size(); ++i)
+    number[i] = gone[i] ? 0 : kept++;
+  for (CoincidentSides& pair : pairs)
+    pair = {number[pair.one], number[pair.other]};
+}
+
 /// What a group of merged splats sums up to.
 struct Sum {
   Splat first;
@@ -51,7 +66,8 @@ struct Sum {
 
 } // namespace
 
-std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id) {
+std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id,
+                                          std::vector<CoincidentSides>* pairs) {
   std::vector<std::uint32_t> order(splats.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -79,7 +95,10 @@ std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vecto
     }
     for (const auto& [index, sum] : sides)
       splats[index] = sum.mean();
+    if (pairs != nullptr && sides.size() == 2 && opposite(splats[sides[0].first], splats[sides[1].first]))
+      pairs->push_back({sides[0].first, sides[1].first});
   }
+  if (pairs != nullptr) renumber(*pairs, gone);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < splats.size(); ++i)
     if (!gone[i]) {

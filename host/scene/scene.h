@@ -76,6 +76,7 @@ struct MaterialSettings {
   std::optional<FieldAlbedo> albedo_field;      ///< instead of the points' colours, encoded as they are
   Vector3d emission{0, 0, 0};                   ///< radiance [W/m²/sr] of the front side
   pg_uint flags = 0;                            ///< MATERIAL_... of shared/material_kinds.h
+  bool one_sided = false;                       ///< two_sided = false: even points that have no side have only a front
   Vector3d specular{0, 0, 0};                   ///< reflectance of the specular part (Material::specular)
   double exponent = 1.0;                        ///< of a Phong lobe
   double ior = 1.5;                             ///< of glass
@@ -97,6 +98,7 @@ struct CloudSettings {
   Vector3d translate{0, 0, 0};
   NormalSource normals = NormalSource::automatic;
   RadiusSource radii = RadiusSource::automatic;
+  StrayPolicy strays = StrayPolicy::drop;
   std::optional<double> radius;      ///< one radius for all points, world units after scaling
   std::optional<Vector3d> viewpoint; ///< sensor position in the file's coordinates
   Selection selection;               ///< which of the file's points are wanted

@@ -42,14 +42,26 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
   cloud.colour.assign(cloud.size(), albedo.cast<float>().cwiseMin(most));
 }
 
-void place(PointCloud& cloud, const CloudSettings& settings, const Eigen::Matrix3d& rotation) {
+/// From a cloud's own coordinates to the scene's.
+struct Placement {
+  Eigen::Matrix3d rotation;
+  double scale;
+  Vector3d translate;
+
+  explicit Placement(const CloudSettings& settings)
+      : rotation(rotation_of(settings)), scale(settings.scale), translate(settings.translate) {}
+  Vector3d to_scene(const Vector3d& p) const { return rotation * (p * scale) + translate; }
+  Vector3d to_cloud(const Vector3d& p) const { return rotation.transpose() * (p - translate) / scale; }
+};
+
+void place(PointCloud& cloud, const CloudSettings& settings, const Placement& placement) {
   const bool turned = !settings.rotate_deg.isZero();
-  const Eigen::Matrix3f rotation_f = rotation.cast<float>();
+  const Eigen::Matrix3f rotation_f = placement.rotation.cast<float>();
   const auto scale = static_cast<float>(settings.scale);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     Vector3d p = cloud.position[i] * settings.scale;
     if (turned) {
-      p = rotation * p;
+      p = placement.rotation * p;
       cloud.normal[i] = (rotation_f * cloud.normal[i]).normalized();
     }
     cloud.position[i] = p + settings.translate;
@@ -58,13 +70,24 @@ void place(PointCloud& cloud, const CloudSettings& settings, const Eigen::Matrix
   }
 }
 
+/// What is known beyond the file, in the cloud's own coordinates: what the scene's camera and lamps see faces them.
+CompleteOptions completion_of(const CloudSettings& settings, const Scene& scene) {
+  const Placement placement(settings);
+  CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, {}};
+  if (scene.camera.chosen) options.eyes.push_back(placement.to_cloud(scene.camera.position));
+  for (const LightSettings& light : scene.lights)
+    if (!light.is_far && light.type == LightType::point) options.eyes.push_back(placement.to_cloud(light.vector));
+  if (scene.up_chosen) options.up = Vector3d(placement.rotation.transpose() * direction_of(scene.up));
+  return options;
+}
+
 /// What the report says of places and directions, too.
-void place(CloudReport& report, const CloudSettings& settings, const Eigen::Matrix3d& rotation) {
+void place(CloudReport& report, const Placement& placement) {
   for (Vector3d& station : report.stations) {
     if (report.placement) station = (*report.placement)(station);
-    station = rotation * (settings.scale * station) + settings.translate;
+    station = placement.to_scene(station);
   }
-  if (report.up) report.up = rotation * *report.up;
+  if (report.up) report.up = Vector3d(placement.rotation * *report.up);
 }
 
 /// Where the material or the lack of colours asks for it.
@@ -106,6 +129,7 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   join(all.cloud.colour, part.colour);
   join(all.cloud.radius, part.radius);
   join(all.cloud.area, part.area);
+  join(all.cloud.structure, part.structure);
 }
 
 } // namespace
@@ -129,7 +153,8 @@ Eigen::Matrix3d rotation_of(const CloudSettings& settings) {
       .toRotationMatrix();
 }
 
-PointCloud load_cloud(const CloudSettings& settings, CloudReport& report, const std::vector<std::string>& fields) {
+PointCloud load_cloud(const CloudSettings& settings, const Scene& scene, CloudReport& report,
+                      const std::vector<std::string>& fields) {
   std::vector<std::string> wanted = fields_of(settings.selection);
   wanted.insert(wanted.end(), fields.begin(), fields.end());
   PointCloud cloud = settings.points
@@ -140,12 +165,12 @@ PointCloud load_cloud(const CloudSettings& settings, CloudReport& report, const 
   try {
     if (report.points_in_file == 0) report.points_in_file = cloud.size();
     select_points(cloud, settings.selection, report); // in the file's own coordinates
-    std::optional<Vector3d> viewpoint = settings.viewpoint;
+    CompleteOptions options = completion_of(settings, scene);
     if (report.placement) {
       std::transform(cloud.position.begin(), cloud.position.end(), cloud.position.begin(), *report.placement);
-      if (viewpoint) viewpoint = (*report.placement)(*viewpoint);
+      if (options.viewpoint) options.viewpoint = (*report.placement)(*options.viewpoint);
     }
-    complete_cloud(cloud, {settings.normals, settings.radii, viewpoint}, report);
+    complete_cloud(cloud, options, report);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw; // it is no fault of the cloud
     throw Error(error.kind(), settings.file + ": " + error.what());
@@ -161,16 +186,18 @@ WorldSplats load_splats(const Scene& scene) {
     CloudReport& report = all.reports.emplace_back();
     const std::uint32_t number = index_of(scene, settings.material);
     const MaterialSettings& material = scene.materials[number];
-    PointCloud cloud = load_cloud(settings, report, material.albedo_field ? material.albedo_field->fields : no_fields);
+    PointCloud cloud =
+        load_cloud(settings, scene, report, material.albedo_field ? material.albedo_field->fields : no_fields);
     take_colours_from_fields(cloud, settings, material, report);
     set_albedo(cloud, material);
-    const Eigen::Matrix3d rotation = rotation_of(settings);
-    place(cloud, settings, rotation);
-    place(report, settings, rotation);
+    const Placement placement(settings);
+    place(cloud, settings, placement);
+    place(report, placement);
     append(all, std::move(cloud), number);
   }
   for (const ShapeSettings& settings : scene.shapes) {
     PointCloud cloud = sample_shape(settings);
+    cloud.structure.assign(cloud.size(), Structure::surface);
     const std::uint32_t material = index_of(scene, settings.material);
     refuse_fields(settings, scene.materials[material]);
     set_albedo(cloud, scene.materials[material]);

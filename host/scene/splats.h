@@ -16,9 +16,10 @@ struct WorldSplats {
   std::vector<std::uint32_t> first;    ///< point of each object: of the clouds, then the shapes, in the scene's order
 };
 
-/// Reads a cloud or mesh (anything else that assimp knows; sampled) and completes it; file's own coordinates. `fields`:
-/// names of those of the file that are wanted.
-PointCloud load_cloud(const CloudSettings& settings, CloudReport& report, const std::vector<std::string>& fields = {});
+/// Reads a cloud or mesh (anything else that assimp knows; sampled) and completes it, with what the scene's camera,
+/// lamps and up say of its sides; the file's own coordinates. `fields`: names of those of the file that are wanted.
+PointCloud load_cloud(const CloudSettings& settings, const Scene& scene, CloudReport& report,
+                      const std::vector<std::string>& fields = {});
 
 /// Loads, samples and places everything. Throws Error(input), or Error(memory).
 WorldSplats load_splats(const Scene& scene);

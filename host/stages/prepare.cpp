@@ -24,6 +24,7 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
     const CloudReport& r = splats.reports[i];
     log_info("{}: {} points; normals {}; radii {}", scene.clouds[i].file,
              r.points_in_file - r.points_left_out - r.points_dropped, r.normals_from, r.radii_from);
+    if (!r.kind_reason.empty()) log_info("{}: taken as {}: {}", scene.clouds[i].file, name_of(r.kind), r.kind_reason);
     for (const std::string& note : r.notes)
       log_info("{}: {}", scene.clouds[i].file, note);
     for (const std::string& warning : r.warnings)
@@ -58,10 +59,12 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   placed.first_ids = world.first;
   placed.id.resize(placed.splats.size());
   std::iota(placed.id.begin(), placed.id.end(), 0u);
-  std::vector<MergedSplat> merged = merge_coincident(placed.splats, placed.id);
+  std::vector<CoincidentSides> sides;
+  std::vector<MergedSplat> merged = merge_coincident(placed.splats, placed.id, &sides);
   if (!merged.empty()) log_info("{} points that lie on others were merged with them", merged.size());
   if (one_file) placed.file_order = FileOrder{std::move(world.record), file_points, std::move(merged)};
-  if (const std::size_t sheets = divide_sheets(scene, placed.splats, placed.id); sheets > 0)
+  if (const std::size_t sheets = divide_sheets(scene, placed.splats, placed.id, world.cloud.structure, sides);
+      sheets > 0)
     log_info("{} splats are two-sided: each side is a point of its own", sheets);
   return placed;
 }

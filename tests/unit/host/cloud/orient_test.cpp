@@ -1,5 +1,7 @@
 #include "host/cloud/normals.h"
 #include "host/cloud/orient.h"
+#include "host/cloud/sensor_view.h"
+#include "host/cloud/splat_size.h"
 #include "tests/unit/host/cloud/sampled_surfaces.h"
 #include <catch2/catch.hpp>
 
@@ -15,11 +17,21 @@ struct Oriented {
   std::string how;
 };
 
-Oriented orient(const PointCloud& cloud, std::optional<Vector3d> viewpoint = {}) {
+std::string orient(const Sites& sites, const OrientationEvidence& given, std::vector<Vector3f>& normals,
+                   const std::vector<Structure>& structure = {}) {
+  const std::vector<float> spacing = site_spacing(sites, {}).spacing;
+  const FreeSpace space(sites, spacing, 128);
+  OrientationEvidence evidence = given;
+  evidence.kind = recognise_kind(sites, spacing, normals, structure, space, {!given.stations.empty(), {}, false});
+  return orient_normals(sites, evidence, space, normals).how;
+}
+
+Oriented orient(const PointCloud& cloud, const OrientationEvidence& evidence = {}) {
   const Sites sites(cloud.position);
-  std::vector<Vector3f> normals = estimate_normals(sites);
+  std::vector<Structure> structure;
+  std::vector<Vector3f> normals = estimate_normals(sites, &structure);
   Oriented result;
-  result.how = orient_normals(sites, viewpoint, normals);
+  result.how = orient(sites, evidence, normals, structure);
   std::size_t agree = 0;
   for (std::uint32_t s = 0; s < sites.size(); ++s) // -0.01: a point on an edge may have taken the other face's normal
     agree += normals[s].dot(cloud.normal[*sites.points(s).begin()]) > -0.01f;
@@ -71,7 +83,7 @@ TEST_CASE("the two sides of a plate oppose each other", "[cloud][orient]") {
   std::vector<Vector3f> normals;
   for (std::uint32_t s = 0; s < sites.size(); ++s)
     normals.push_back(Vector3f::UnitZ() * (s % 3 == 0 ? -1.0f : 1.0f));
-  orient_normals(sites, {}, normals);
+  CHECK(orient(sites, {}, normals) == "outwards");
   std::size_t agree = 0;
   for (std::uint32_t s = 0; s < sites.size(); ++s)
     agree += normals[s].dot(plate.normal[*sites.points(s).begin()]) > 0;
@@ -105,7 +117,7 @@ TEST_CASE("a viewpoint turns every normal towards it", "[cloud][orient]") {
   PointCloud cloud = fibonacci_sphere(5000);
   for (Vector3f& n : cloud.normal)
     n = -n;
-  const Oriented inside = orient(cloud, Vector3d(0.1, 0, 0));
+  const Oriented inside = orient(cloud, {Vector3d(0.1, 0, 0), {}, {}, {}, {}});
   CHECK(inside.agree == 1.0);
   CHECK(inside.how == "towards the viewpoint");
 }
@@ -126,20 +138,60 @@ TEST_CASE("a depth image is seen from its sensor", "[cloud][orient]") {
       }
     }
   const Sites sites(cloud.position);
-  CHECK(depth_image_share(sites, sites.to_local({0, 0, 0})) > 0.97); // the rest: the ball's outline
+  const SensorView view = sensor_view(sites, sites.to_local({0, 0, 0}));
+  CHECK(view.one_depth > 0.97); // the rest: the ball's outline
+  CHECK(view.lattice);
+  CHECK_FALSE(view.all_around);
   const Oriented result = orient(cloud);
   CHECK(result.how == "towards the sensor at the origin");
   CHECK(result.agree > 0.999); // an estimate across the outline may face anywhere
 
   // The same from another place: things lie behind one another.
-  CHECK(depth_image_share(sites, sites.to_local({6, 0, 2})) < 0.96);
+  CHECK_FALSE(sensor_view(sites, sites.to_local({6, 0, 2})).convincing());
   // Bodies with a back.
   const Sites ball(moved(fibonacci_sphere(10000), {0, 0, 4}).position);
-  CHECK(depth_image_share(ball, ball.to_local({0, 0, 0})) < 0.7);
-  // All around, or from too far: not decided by it.
-  const Sites around(fibonacci_sphere(10000).position);
-  CHECK(depth_image_share(around, around.to_local({0, 0, 0})) == 0);
-  CHECK(depth_image_share(sites, sites.to_local({0, 0, -1e5})) == 0);
+  CHECK(sensor_view(ball, ball.to_local({0, 0, 0})).one_depth < 0.7);
+  // An object about the origin has one depth a direction, too, or it is seen from too far.
+  for (const PointCloud& object : {fibonacci_sphere(10000), random_sampling(on_cube, 10000, 28)}) {
+    const Sites around(object.position);
+    CHECK_FALSE(sensor_view(around, around.to_local({0, 0, 0})).convincing());
+  }
+  CHECK_FALSE(sensor_view(sites, sites.to_local({0, 0, -1e5})).convincing());
+}
+
+TEST_CASE("a scanner in the middle of a court is told by its even angles", "[cloud][orient]") {
+  // A floor and four walls, as a scanner that turns records them: a grid of azimuth and elevation.
+  PointCloud cloud;
+  for (int i = 0; i < 360; ++i)
+    for (int j = -40; j < 20; ++j) {
+      const double azimuth = i * pi / 180, elevation = j * pi / 180;
+      const Vector3d ray(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                         std::sin(elevation));
+      double t = ray.z() < 0 ? -1.7 / ray.z() : 1e30;
+      Vector3d normal = Vector3d::UnitZ();
+      for (int axis = 0; axis < 2; ++axis) {
+        const double wall = std::copysign(axis == 0 ? 9.0 : 5.0, ray[axis]);
+        if (wall / ray[axis] < t) t = wall / ray[axis], normal = -Vector3d::Unit(axis) * std::copysign(1.0, ray[axis]);
+      }
+      add(cloud, t * ray, normal);
+    }
+  const Sites sites(cloud.position);
+  const SensorView view = sensor_view(sites, sites.to_local({0, 0, 0}));
+  CHECK(view.convincing());
+  CHECK(view.all_around);
+  CHECK(view.evenness > -0.3);
+  const Oriented result = orient(cloud);
+  CHECK(result.how == "towards the sensor at the origin");
+  CHECK(result.agree > 0.999);
+  // The same court sampled evenly by area, as a model is: not from the origin, and nobody knows that it is a court.
+  PointCloud even;
+  std::mt19937_64 random(29);
+  for (int i = 0; i < 20000; ++i)
+    add(even, {uniform(random, -9, 9), uniform(random, -5, 5), -1.7}, Vector3d::UnitZ());
+  for (int i = 0; i < 10000; ++i)
+    add(even, {uniform(random, -9, 9), random() % 2 ? -5.0 : 5.0, uniform(random, -1.7, 1.7)}, Vector3d::UnitY());
+  const Sites even_sites(even.position);
+  CHECK_FALSE(sensor_view(even_sites, even_sites.to_local({0, 0, 0})).convincing());
 }
 
 TEST_CASE("noise of a third of the spacing does not upset the sides", "[cloud][orient]") {

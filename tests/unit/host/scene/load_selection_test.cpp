@@ -71,7 +71,7 @@ TEST_CASE("a cloud is selected from before anything is estimated from it", "[sce
   const SceneFolder folder;
   CloudReport report;
   const Scene scene = folder.load(scene_with(folder, "keep = { class = [2, 6] }"));
-  const PointCloud cloud = load_cloud(scene.clouds[0], report);
+  const PointCloud cloud = load_cloud(scene.clouds[0], scene, report);
   CHECK(cloud.record == std::vector<std::uint32_t>{0, 1, 2});
   CHECK(cloud.radius.size() == 3);
   CHECK(report.points_in_file == 4);
@@ -80,7 +80,7 @@ TEST_CASE("a cloud is selected from before anything is estimated from it", "[sce
   const Scene none = folder.load(scene_with(folder, "keep = { class = 9 }"));
   try {
     CloudReport ignored;
-    load_cloud(none.clouds[0], ignored);
+    load_cloud(none.clouds[0], none, ignored);
     FAIL("nothing was left");
   } catch (const Error& error) {
     CHECK(error.kind() == ErrorKind::input);

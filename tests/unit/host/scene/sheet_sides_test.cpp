@@ -145,3 +145,36 @@ TEST_CASE("a lit cloud has a point for each side, with light of its own") {
   const auto scale = static_cast<float>(lighting.radiance.scale);
   CHECK(lit.columns[1].values == std::vector<float>{0.5f * scale, 3.0f * scale, 4.0f * scale});
 }
+
+TEST_CASE("two splats in one place that face opposite ways are the sides of a sheet, each with its colour") {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].flags = MATERIAL_REFLECTS_DIFFUSELY;
+  std::vector<Splat> splats{make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f), make_splat(0.2f, 0.5f, 0.5f, 0, 0, 1, 0.1f),
+                            make_splat(0.5f, 0.5f, 0.5f, 0, 0, -1, 0.2f)};
+  splats[2].colour[0] = 0.9f;
+  std::vector<std::uint32_t> id{7, 8, 9};
+  std::vector<CoincidentSides> sides;
+  CHECK(merge_coincident(splats, id, &sides).empty());
+  REQUIRE(sides.size() == 1);
+  CHECK(divide_sheets(scene, splats, id, {}, sides) == 1);
+  REQUIRE(splats.size() == 3);
+  CHECK(id == std::vector<std::uint32_t>{7, 9, 8});
+  CHECK(splats[0].material == SHEET_FRONT);
+  CHECK(splats[1].material == SHEET_BACK);
+  CHECK(splats[1].colour[0] == 0.9f);
+  CHECK(splats[0].radius == splats[1].radius);
+  CHECK(splats[1].normal[2] == -1.0f);
+}
+
+TEST_CASE("points without a side are sheets, unless their material forbids it") {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].flags = MATERIAL_REFLECTS_DIFFUSELY;
+  for (const bool forbidden : {false, true}) {
+    scene.materials[0].one_sided = forbidden;
+    std::vector<Splat> splats{make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f), make_splat(0.2f, 0.5f, 0.5f, 0, 0, 1, 0.1f)};
+    std::vector<std::uint32_t> id{1, 0};
+    CHECK(divide_sheets(scene, splats, id, {Structure::surface, Structure::volume}) == (forbidden ? 0 : 1));
+  }
+}

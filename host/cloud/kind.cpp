@@ -1,0 +1,255 @@
+#include "host/cloud/kind.h"
+#include "host/cloud/sensor_view.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace pointgi {
+
+namespace {
+
+constexpr std::uint32_t looked_at = 4000; // sites of a sample; shares are then right to 1 %
+constexpr double terrain_thickness = 0.35;
+constexpr double terrain_facing = 0.5; // mean of |n.up|
+constexpr double single_valued = 0.7;  // share of columns that hold one height
+constexpr double two_sheets = 1.9;     // kurtosis below which the columns hold two
+constexpr double enclosed = 0.15;      // openness below which a side is inside something
+constexpr double many_enclosed = 0.3;  // share of sites with both sides enclosed, of rooms
+constexpr double on_the_walls = 0.8;   // share of sites, of an empty box
+constexpr double mostly_volume = 0.5;
+constexpr double edge_on = 0.1;
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
+  return text;
+}
+
+struct Extent {
+  Eigen::Vector3d low, high;
+  Eigen::Vector3d size() const { return high - low; }
+};
+
+/// Of the sites on surfaces, without the outermost hundredth on each side.
+Extent extent_of(const Sites& sites, const std::vector<Structure>& structure) {
+  const auto on_surface = [&](std::uint32_t s) { return structure.empty() || structure[s] == Structure::surface; };
+  std::array<std::vector<double>, 3> values;
+  for (std::uint32_t s = 0; s < sites.size(); ++s)
+    for (std::size_t axis = 0; on_surface(s) && axis < 3; ++axis)
+      values[axis].push_back(sites.position(s)[static_cast<Eigen::Index>(axis)]);
+  if (4 * values[0].size() < sites.size()) return extent_of(sites, {});
+  Extent extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double>& along = values[static_cast<std::size_t>(axis)];
+    const std::size_t cut = along.size() / 100;
+    for (const std::size_t at : {cut, along.size() - 1 - cut}) {
+      std::nth_element(along.begin(), along.begin() + static_cast<std::ptrdiff_t>(at), along.end());
+      (at == cut ? extent.low : extent.high)[axis] = along[at];
+    }
+  }
+  return extent;
+}
+
+double mean_facing(const std::vector<Eigen::Vector3f>& normals, int axis) {
+  double sum = 0;
+  for (const Eigen::Vector3f& n : normals)
+    sum += std::abs(static_cast<double>(n[axis]));
+  return sum / static_cast<double>(normals.size());
+}
+
+/// How the sites of a column lie about a plane of their own.
+struct Layering {
+  double one_layer = 0; ///< share of the columns in which they do so no farther than 1.8 of their distances
+  double kurtosis = 3;  ///< of those distances from the plane: 3 for noise, near 1 for two sheets
+};
+
+/// The distances of a column's sites from the plane that fits them best, in cells.
+std::vector<double> residuals_of(const Sites& sites, const std::vector<std::uint32_t>& column, int axis, double cell) {
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  const Eigen::Vector3d& origin = sites.position(column[0]);
+  const auto row_of = [&](std::uint32_t s) {
+    const Eigen::Vector3d e = (sites.position(s) - origin) / cell;
+    return Eigen::Vector3d(1.0, e[a], e[b]);
+  };
+  Eigen::Matrix3d moments = 1e-9 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const std::uint32_t s : column) {
+    moments += row_of(s) * row_of(s).transpose();
+    right += row_of(s) * (sites.position(s)[axis] - origin[axis]) / cell;
+  }
+  const Eigen::Vector3d plane = moments.inverse() * right;
+  std::vector<double> residuals;
+  for (const std::uint32_t s : column)
+    residuals.push_back((sites.position(s)[axis] - origin[axis]) / cell - plane.dot(row_of(s)));
+  return residuals;
+}
+
+/// Over a grid across `axis` whose cells are four distances of neighbours wide. Points of no surface do not count.
+Layering layering_of(const Sites& sites, const std::vector<Structure>& structure, const Extent& extent, int axis) {
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  const double area = std::max(extent.size()[a] * extent.size()[b], 1e-300);
+  const double cell = std::sqrt(16.0 * area / sites.size());
+  const auto columns = static_cast<std::size_t>(extent.size()[a] / cell) + 1;
+  const auto rows = static_cast<std::size_t>(extent.size()[b] / cell) + 1;
+  std::vector<std::vector<std::uint32_t>> grid(columns * rows);
+  for (std::uint32_t s = 0; s < sites.size(); ++s) {
+    if (!structure.empty() && structure[s] == Structure::line) continue;
+    const Eigen::Vector3d p = (sites.position(s) - extent.low) / cell;
+    if (p[a] < 0 || p[b] < 0) continue;
+    const auto x = static_cast<std::size_t>(p[a]), y = static_cast<std::size_t>(p[b]);
+    if (x < columns && y < rows) grid[y * columns + x].push_back(s);
+  }
+  constexpr double thick = 0.45; // of a cell
+  std::size_t full = 0, single = 0;
+  double second = 0, fourth = 0, count = 0;
+  for (const auto& column : grid) {
+    if (column.size() < 8) continue;
+    ++full;
+    double sum = 0;
+    const std::vector<double> residuals = residuals_of(sites, column, axis, cell);
+    for (const double r : residuals)
+      sum += r * r;
+    const bool one = std::sqrt(sum / static_cast<double>(residuals.size())) < thick;
+    single += one;
+    for (const double r : residuals) {
+      if (!one) break;
+      second += r * r;
+      fourth += r * r * r * r;
+      count += 1;
+    }
+  }
+  Layering result;
+  if (full > 0) result.one_layer = static_cast<double>(single) / static_cast<double>(full);
+  if (second > 1e-3 * count) result.kurtosis = fourth * count / (second * second); // thinner than that is one layer
+  return result;
+}
+
+/// The axis along which the cloud is a height field, or -1.
+int height_axis(const Sites& sites, const Extent& extent, const std::vector<Eigen::Vector3f>& normals,
+                const std::vector<Structure>& structure, const KindHints& hints, double& share) {
+  const Eigen::Vector3d size = extent.size();
+  int thin = 0;
+  size.minCoeff(&thin);
+  if (hints.up) hints.up->cwiseAbs().maxCoeff(&thin);
+  const double middle = size.sum() - size.minCoeff() - size.maxCoeff();
+  if (size[thin] > terrain_thickness * middle || mean_facing(normals, thin) < terrain_facing) return -1;
+  if (hints.signs_given) { // a wall that was scanned on both sides is none
+    double sum = 0;
+    for (const Eigen::Vector3f& n : normals)
+      sum += static_cast<double>(n[thin]);
+    if (std::abs(sum) < terrain_facing * static_cast<double>(normals.size())) return -1;
+  }
+  const Layering layers = layering_of(sites, structure, extent, thin);
+  share = layers.one_layer;
+  return share > single_valued && layers.kurtosis > two_sheets ? thin : -1;
+}
+
+/// Whether normals that have signs point to the middle of the sites.
+bool points_inwards(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const Extent& extent) {
+  const Eigen::Vector3d middle = 0.5 * (extent.low + extent.high);
+  double sum = 0;
+  for (std::uint32_t s = 0; s < sites.size(); ++s)
+    sum += normals[s].cast<double>().dot((middle - sites.position(s)).normalized());
+  return sum > 0.5 * sites.size();
+}
+
+/// Median of the cosine under which the sensor sees the surface: near 0, and it cannot have scanned it.
+double median_cosine(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const Eigen::Vector3d& sensor) {
+  const std::uint32_t step = std::max(1u, sites.size() / looked_at);
+  std::vector<double> cosines;
+  for (std::uint32_t s = 0; s < sites.size(); s += step) {
+    const Eigen::Vector3d way = sites.position(s) - sensor;
+    cosines.push_back(std::abs(normals[s].cast<double>().dot(way)) / std::max(way.norm(), 1e-30));
+  }
+  const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
+  std::nth_element(cosines.begin(), middle, cosines.end());
+  return *middle;
+}
+
+/// Share of the sites near the six sides of the bounds, if every side has some; else 0.
+double box_share(const Sites& sites, const Extent& extent) {
+  std::array<std::size_t, 6> on{};
+  std::size_t any = 0, inside = 0;
+  const double near = 0.03 * extent.size().maxCoeff();
+  for (std::uint32_t s = 0; s < sites.size(); ++s) {
+    const Eigen::Vector3d& p = sites.position(s);
+    if ((p.array() < extent.low.array() - near).any() || (p.array() > extent.high.array() + near).any()) continue;
+    ++inside;
+    bool wall = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side)
+        if (std::abs(p[axis] - (side == 0 ? extent.low : extent.high)[axis]) < near) {
+          ++on[static_cast<std::size_t>(2 * axis + side)];
+          wall = true;
+        }
+    any += wall;
+  }
+  if (*std::min_element(on.begin(), on.end()) * 50 < inside) return 0.0;
+  return static_cast<double>(any) / static_cast<double>(std::max<std::size_t>(inside, 1));
+}
+
+/// Metres, as nearly all scans of rooms have them.
+bool has_size_of_a_room(const Eigen::Vector3d& size) {
+  return size.minCoeff() > 1.8 && size.minCoeff() < 8.0 && size.maxCoeff() < 100.0;
+}
+
+/// Share of a sample of the sites that have something in front of both their sides.
+double enclosed_share(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const FreeSpace& space) {
+  const std::uint32_t step = std::max(1u, sites.size() / looked_at);
+  std::size_t both = 0, all = 0;
+  for (std::uint32_t s = 0; s < sites.size(); s += step, ++all) {
+    const Eigen::Vector3d n = normals[s].cast<double>();
+    both += space.openness(sites.position(s), n) < enclosed && space.openness(sites.position(s), -n) < enclosed;
+  }
+  return static_cast<double>(both) / static_cast<double>(all);
+}
+
+} // namespace
+
+RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>&,
+                              const std::vector<Eigen::Vector3f>& normals, const std::vector<Structure>& structure,
+                              const FreeSpace& space, const KindHints& hints) {
+  if (hints.has_stations)
+    return {CloudKind::station, "positions of scanners are known", {}, hints.up.value_or(Eigen::Vector3d::UnitZ())};
+  if (sites.size() < 100) return {CloudKind::model, "few points", {}, hints.up};
+  const Eigen::Vector3d origin = sites.to_local(Eigen::Vector3d::Zero());
+  if (const SensorView view = sensor_view(sites, origin);
+      view.convincing() && median_cosine(sites, normals, origin) > edge_on) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%.1f %% of the points have one depth a direction from the origin, %s",
+                  100.0 * view.one_depth,
+                  view.lattice ? "in rows and columns as pixels have" : "evenly spread over the directions");
+    const bool frame = view.lattice;
+    return {frame ? CloudKind::depth_frame : CloudKind::station, text, Eigen::Vector3d(Eigen::Vector3d::Zero()),
+            frame ? hints.up : hints.up.value_or(Eigen::Vector3d::UnitZ())};
+  }
+  const Extent extent = extent_of(sites, structure);
+  double share = 0;
+  if (const int axis = height_axis(sites, extent, normals, structure, hints, share); axis >= 0)
+    return {CloudKind::terrain,
+            "one height at " + percent(share) + " of the places",
+            {},
+            hints.up.value_or(Eigen::Vector3d::Unit(axis))};
+  const auto volume = std::count(structure.begin(), structure.end(), Structure::volume);
+  if (static_cast<double>(volume) > mostly_volume * sites.size())
+    return {CloudKind::foliage,
+            percent(static_cast<double>(volume) / sites.size()) + " of the points have no surface around them",
+            {},
+            hints.up};
+  const Eigen::Vector3d size = extent.size() * sites.unit();
+  if (has_size_of_a_room(size) && (!hints.signs_given || points_inwards(sites, normals, extent)))
+    if (const double walls = box_share(sites, extent); walls > on_the_walls)
+      return {CloudKind::room,
+              percent(walls) + " of the points lie on the six sides of a box as large as a room",
+              {},
+              hints.up};
+  if (const double inside = enclosed_share(sites, normals, space); inside > many_enclosed)
+    return {
+        CloudKind::room, percent(inside) + " of the points have something in front of both their sides", {}, hints.up};
+  if (hints.up) return {CloudKind::map, "the format knows which way is up", {}, hints.up};
+  return {CloudKind::model, "nothing speaks for another kind", {}, {}};
+}
+
+} // namespace pointgi
