@@ -43,25 +43,25 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
 }
 
 /// From a cloud's own coordinates to the scene's.
-struct Placement {
+struct CloudPose {
   Eigen::Matrix3d rotation;
   double scale;
   Vector3d translate;
 
-  explicit Placement(const CloudSettings& settings)
+  explicit CloudPose(const CloudSettings& settings)
       : rotation(rotation_of(settings)), scale(settings.scale), translate(settings.translate) {}
   Vector3d to_scene(const Vector3d& p) const { return rotation * (p * scale) + translate; }
   Vector3d to_cloud(const Vector3d& p) const { return rotation.transpose() * (p - translate) / scale; }
 };
 
-void place(PointCloud& cloud, const CloudSettings& settings, const Placement& placement) {
+void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& pose) {
   const bool turned = !settings.rotate_deg.isZero();
-  const Eigen::Matrix3f rotation_f = placement.rotation.cast<float>();
+  const Eigen::Matrix3f rotation_f = pose.rotation.cast<float>();
   const auto scale = static_cast<float>(settings.scale);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     Vector3d p = cloud.position[i] * settings.scale;
     if (turned) {
-      p = placement.rotation * p;
+      p = pose.rotation * p;
       cloud.normal[i] = (rotation_f * cloud.normal[i]).normalized();
     }
     cloud.position[i] = p + settings.translate;
@@ -72,22 +72,22 @@ void place(PointCloud& cloud, const CloudSettings& settings, const Placement& pl
 
 /// What is known beyond the file, in the cloud's own coordinates: what the scene's camera and lamps see faces them.
 CompleteOptions completion_of(const CloudSettings& settings, const Scene& scene) {
-  const Placement placement(settings);
+  const CloudPose pose(settings);
   CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, {}};
-  if (scene.camera.chosen) options.eyes.push_back(placement.to_cloud(scene.camera.position));
+  if (scene.camera.chosen) options.eyes.push_back(pose.to_cloud(scene.camera.position));
   for (const LightSettings& light : scene.lights)
-    if (!light.is_far && light.type == LightType::point) options.eyes.push_back(placement.to_cloud(light.vector));
-  if (scene.up_chosen) options.up = Vector3d(placement.rotation.transpose() * direction_of(scene.up));
+    if (!light.is_far && light.type == LightType::point) options.eyes.push_back(pose.to_cloud(light.vector));
+  if (scene.up_chosen) options.up = Vector3d(pose.rotation.transpose() * direction_of(scene.up));
   return options;
 }
 
 /// What the report says of places and directions, too.
-void place(CloudReport& report, const Placement& placement) {
+void place(CloudReport& report, const CloudPose& pose) {
   for (Vector3d& station : report.stations) {
     if (report.placement) station = (*report.placement)(station);
-    station = placement.to_scene(station);
+    station = pose.to_scene(station);
   }
-  if (report.up) report.up = Vector3d(placement.rotation * *report.up);
+  if (report.up) report.up = Vector3d(pose.rotation * *report.up);
 }
 
 /// Where the material or the lack of colours asks for it.
@@ -190,9 +190,9 @@ WorldSplats load_splats(const Scene& scene) {
         load_cloud(settings, scene, report, material.albedo_field ? material.albedo_field->fields : no_fields);
     take_colours_from_fields(cloud, settings, material, report);
     set_albedo(cloud, material);
-    const Placement placement(settings);
-    place(cloud, settings, placement);
-    place(report, placement);
+    const CloudPose pose(settings);
+    place(cloud, settings, pose);
+    place(report, pose);
     append(all, std::move(cloud), number);
   }
   for (const ShapeSettings& settings : scene.shapes) {
