@@ -51,8 +51,8 @@ struct LightOptions {
 
 /// What a lit cloud's file shows besides the points.
 struct LitFileOptions {
-  double exposure = 0.0; ///< brightens the colours, in stops
-  bool sky = false;      ///< scalar_sky: as of Light::sky(); a scene without any light then has nothing else
+  std::optional<double> exposure = 0.0; ///< brightens the colours, in stops; absent: chosen from the points
+  bool sky = false; ///< scalar_sky: as of Light::sky(); a scene without any light then has nothing else
 };
 
 /// The solved light of a prepared scene. It does not depend on a camera: any number of films may be made by it.

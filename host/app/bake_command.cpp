@@ -26,8 +26,6 @@ api::Scene checked_scene(const BakeOptions& options) {
   api::Scene checked = api::Scene::from_file(options.input, overrides_of(options));
   checked.set_bake_quality(options.quality);
   const Scene scene = checked.parts()->description();
-  if (options.exposure == "auto")
-    throw Error(ErrorKind::usage, "--exposure: of a lit cloud, expected a number of stops, found \"auto\"");
   require_possible_radiosity(scene);
   if (is_las(options) && !can_write_las(scene))
     throw Error(ErrorKind::output, options.output +
@@ -57,7 +55,8 @@ ExitCode run_bake(const BakeOptions& options) {
   stages.skip("render", "a lit cloud is no picture: it has no camera");
   if (options.sky) light.sky(run.control());
   stages.start("bake");
-  const api::LitFileOptions content{description.render.exposure, options.sky};
+  api::LitFileOptions content{description.render.exposure, options.sky};
+  if (description.render.auto_exposure) content.exposure.reset();
   if (is_las(options))
     light.write_las(options.output, content, run.control());
   else

@@ -151,7 +151,8 @@ int run(int argc, char** argv) {
       app.add_subcommand("bake", "compute the light once for all views, and write it as a point cloud");
   add_light_options(*bake_command, bake, common, "what to light",
                     "the lit cloud, LIT.ply: colours, and radiosity [W/m2] as scalar fields",
-                    "brightens the colours by this many stops (default 0); the radiosity stays as it is",
+                    "brightens the colours by this many stops, or auto: chosen from the points (default: 0 of a "
+                    "scene, auto of a bare cloud); the radiosity stays as it is",
                     "draft: four times the scene's radiosity.epsilon; normal; high: half of it")
       ->required();
   bake_command->add_flag("--sky", bake.sky,

@@ -1,5 +1,7 @@
 #include "host/stages/lit_cloud.h"
+#include "host/image/exposure.h"
 #include "host/image/srgb.h"
+#include "host/run.h"
 #include <algorithm>
 #include <cmath>
 
@@ -24,15 +26,15 @@ LitCloud bare_points(const IndirectRequest& scene) {
   return points;
 }
 
-LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, double exposure) {
+LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, std::optional<double> exposure) {
   LitCloud lit = bare_points(scene);
   lit.columns = {{"scalar_radiosity_r", {}}, {"scalar_radiosity_g", {}}, {"scalar_radiosity_b", {}}};
   const std::vector<float> emitted = emitted_radiosity(scene.lighting, scene.points);
-  const double brightness = std::exp2(exposure) / pi;
+  ExposureMeter meter;
   for (std::size_t p = 0; p < scene.points.size; ++p) {
     const Splat& s = scene.points[p];
     const bool diffuse = exchanges_light(scene.scene.materials[static_cast<std::size_t>(s.material)]);
-    Eigen::Vector3f colour;
+    std::array<float, 3> radiance{};
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t at = 3 * p + c;
       const double irradiance =
@@ -40,10 +42,21 @@ LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, dou
       const double radiosity =
           scene.lighting.radiance.scale * (emitted[at] + (diffuse ? s.colour[c] * irradiance : 0.0));
       lit.columns[c].values.push_back(static_cast<float>(radiosity));
-      const auto shown = static_cast<float>(std::clamp(brightness * radiosity, 0.0, 1.0));
-      colour[static_cast<Eigen::Index>(c)] = linear_to_srgb(shown);
+      radiance[c] = static_cast<float>(radiosity / pi);
     }
-    lit.cloud.colour.push_back(colour);
+    if (!exposure) meter.add(radiance, 1.0f, {s.colour[0], s.colour[1], s.colour[2]});
+  }
+  if (!exposure) {
+    exposure = meter.stops();
+    log_info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", *exposure, *exposure);
+  }
+  const double brightness = std::exp2(*exposure) / pi;
+  for (std::size_t p = 0; p < scene.points.size; ++p) {
+    Eigen::Vector3f& colour = lit.cloud.colour.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double shown = std::clamp(brightness * static_cast<double>(lit.columns[c].values[p]), 0.0, 1.0);
+      colour[static_cast<Eigen::Index>(c)] = linear_to_srgb(static_cast<float>(shown));
+    }
   }
   return lit;
 }

@@ -17,7 +17,7 @@ LitCloud bare_points(const IndirectRequest& scene);
 /// B = E + rho (H_direct + H(B)) of every point of the pool, in its order: all light that leaves the point's front
 /// after emission or diffuse reflection, 0 of specular splats.
 /// `light` has both irradiances, or where no surface sends any light to another the direct one alone. `exposure`:
-/// stops.
-LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, double exposure);
+/// stops; absent: chosen from the points as from the pixels of a picture (host/image/exposure.h), which the log tells.
+LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, std::optional<double> exposure);
 
 } // namespace pointgi
