@@ -88,6 +88,8 @@ private:
 
   /// Counts are often left as they were when points were cut away: what the file has is taken, and said.
   void check_counts(CloudReport& report) const {
+    std::size_t wrong = 0;
+    std::string first_wrong;
     for (std::size_t c = 0; c < counts_.size(); ++c) {
       const std::size_t next = c + 1 < counts_.size() ? counts_[c + 1].points_before : points_;
       const std::string_view text = counts_[c].text;
@@ -95,12 +97,15 @@ private:
         fail(counts_[c].line, "the line announces " + printable(text) + " points, expected 0 or more");
       const std::size_t found = next - counts_[c].points_before;
       double announced = 0.0;
-      if (parse_number(text, false, announced) && announced != static_cast<double>(found))
-        report.warnings.push_back(
-            "line " + std::to_string(counts_[c].line) + " announces " + printable(text) + " points and " +
-            std::to_string(found) +
-            " follow, which were read; if points are missing, the file was cut off: get it again");
+      if (!parse_number(text, false, announced) || announced == static_cast<double>(found)) continue;
+      if (wrong++ == 0)
+        first_wrong = "line " + std::to_string(counts_[c].line) + " announces " + printable(text) + " points and " +
+                      std::to_string(found) + " follow, which were read";
     }
+    if (wrong > 0)
+      report.warnings.push_back(first_wrong +
+                                (wrong > 1 ? " (so do " + std::to_string(wrong - 1) + " lines more)" : "") +
+                                "; if points are missing, the file was cut off: get it again");
     if (points_ == 0) fail(last_line_, "the file ends without a point; expected lines of x y z and more");
     if (points_ > std::numeric_limits<std::uint32_t>::max())
       fail(last_line_,

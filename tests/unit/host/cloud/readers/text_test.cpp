@@ -170,6 +170,10 @@ TEST_CASE("text: what a count announces and what follows may differ, which is to
   const Read r = read("3\n1 2 3\n4 5 6\n", {}, "scan.pts");
   CHECK(r.cloud.size() == 2);
   CHECK_THAT(r.report.warnings.at(0), Contains("line 1 announces 3 points and 2 follow"));
+  // However many counts are wrong, one sentence says so.
+  const Read many = read("1 2 3\n" + lines(2000, [](int i) { return whole(i + 1); }));
+  REQUIRE(many.report.warnings.size() == 1);
+  CHECK_THAT(many.report.warnings[0], Contains("1999 lines more"));
   CHECK_THROWS_WITH(read("-1\n1 2 3\n"), Contains("line 1: the line announces -1 points"));
   CHECK_THROWS_WITH(read("0\n"), Contains("line 1: the file ends without a point"));
   CHECK(read("9223372036854775808\n1 2 3\n").report.warnings.size() == 1);
