@@ -417,9 +417,10 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
                               " points were dropped: they lie over a thousand times the size of the others away; clean "
                               "the scan, or split it into clouds, if they are meant");
   if (dropped > 0)
-    report.warnings.push_back(std::to_string(dropped) + " of " + std::to_string(dropped + cloud.size()) +
-                              " points were dropped: values that are not finite, or radii not above 0; clean the file "
-                              "if they matter");
+    report.warnings.push_back(
+        std::to_string(dropped) + " of " + std::to_string(dropped + cloud.size()) +
+        " points were dropped: values that are not finite, radii not above 0, or opacities below 0.1; "
+        "clean the file if they matter");
 
   const bool sampled = !cloud.area.empty(); // by our own sampler: normals, radii and areas are meant as they are
   if (sampled && !cloud.normal.empty() && !cloud.radius.empty() && options.radii != RadiusSource::estimate &&
