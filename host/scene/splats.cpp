@@ -129,7 +129,6 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   join(all.cloud.colour, part.colour);
   join(all.cloud.radius, part.radius);
   join(all.cloud.area, part.area);
-  join(all.cloud.structure, part.structure);
 }
 
 } // namespace
