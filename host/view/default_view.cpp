@@ -122,6 +122,8 @@ std::string name_of_up(const UpChoice& choice) {
 /// Sets the camera; returns what it shows.
 std::string look(Scene& scene, const WorldSplats& splats, const ViewPoints& points, ChosenView& view) {
   const Vector3d& up = view.up;
+  // An open scan faces the way it was scanned from.
+  const Vector3d open = points.mean_normal - points.mean_normal.dot(up) * up;
   const auto fit = [&](const Vector3d& from) {
     fill_frame(scene, points, from, up, scene.camera.backfaces.value_or(Backfaces::shade));
   };
@@ -129,8 +131,13 @@ std::string look(Scene& scene, const WorldSplats& splats, const ViewPoints& poin
   case CloudKind::depth_frame:
     look_from(scene, points, first_station(splats), up);
     return "seen from its sensor";
-  case CloudKind::terrain:
   case CloudKind::map:
+    if (open.norm() > 0.3) { // a wall, a slope
+      fit(from_above(open, up, 20.0));
+      return "seen from the side that most points face";
+    }
+    [[fallthrough]];
+  case CloudKind::terrain:
     fit(from_above(viewers_side(up), up, 35.0));
     return "seen from the south, 35 degrees down";
   case CloudKind::station:
@@ -149,8 +156,6 @@ std::string look(Scene& scene, const WorldSplats& splats, const ViewPoints& poin
   case CloudKind::foliage:
     break;
   }
-  // An open scan faces the way it was scanned from.
-  const Vector3d open = points.mean_normal - points.mean_normal.dot(up) * up;
   view.is_open = open.norm() > 0.15;
   const Vector3d front = front_of(points, up);
   fit(from_above(view.is_open ? open : Vector3d(front + 0.5 * up.cross(front)), up, 17.0));
