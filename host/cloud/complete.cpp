@@ -32,7 +32,8 @@ constexpr double line_like = 1e-8;      // ratio of variances (of their roots: 1
 constexpr unsigned grid_side = 128;     // of FreeSpace
 constexpr double tell_doubt = 0.02;     // share of points
 constexpr unsigned limit_neighbours = 8;
-constexpr float most_spacings = 2.5f; // radius over the spacing around: beside a 16-fold step in density 2 is right
+constexpr unsigned kept_neighbours = 20; // as many as spacings and most cells need
+constexpr float most_spacings = 2.5f;    // radius over the spacing around: beside a 16-fold step in density 2 is right
 
 std::string percent(double share) {
   char text[32];
@@ -373,7 +374,8 @@ void complete_around_strays(PointCloud& cloud, const std::vector<char>& strays, 
   body.area = without(cloud.area, strays);
   body.station = without(cloud.station, strays);
   body.stations = cloud.stations;
-  const Sites sites(body.position);
+  Sites sites(body.position);
+  sites.keep_neighbours(kept_neighbours);
   complete_body(body, sites, options, report);
   cloud.normal.resize(cloud.size());
   cloud.radius.resize(cloud.size());
@@ -435,6 +437,7 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
   }
 
   auto sites = std::make_unique<Sites>(cloud.position);
+  sites->keep_neighbours(kept_neighbours);
   const std::vector<char> strays = strays_of(cloud, *sites, options);
   if (strays.empty()) {
     complete_body(cloud, *sites, options, report);
@@ -452,7 +455,9 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
   report.notes.push_back(found + "they were left out; strays = \"shrink\" shows them");
   report.points_dropped += count;
   keep_points(cloud, [&](std::size_t i) { return !strays[i]; });
-  complete_body(cloud, Sites(cloud.position), options, report);
+  sites = std::make_unique<Sites>(cloud.position);
+  sites->keep_neighbours(kept_neighbours);
+  complete_body(cloud, *sites, options, report);
 }
 
 } // namespace pointgi

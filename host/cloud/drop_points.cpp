@@ -1,5 +1,6 @@
 #include "host/cloud/drop_points.h"
 #include "host/cloud/keep_points.h"
+#include "host/cloud/quantile.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,15 +37,11 @@ std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& optio
 std::size_t drop_outliers(PointCloud& cloud) {
   if (cloud.size() < least_points) return 0;
   std::array<Eigen::Vector3d, 2> bounds; // without the outermost hundredth of the points on each side of each axis
-  std::vector<double> values(cloud.size());
+  const std::size_t cut = cloud.size() / 100;
   for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      values[i] = cloud.position[i][axis];
-    const std::size_t cut = cloud.size() / 100;
-    for (const std::size_t at : {cut, cloud.size() - 1 - cut}) {
-      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-      bounds[at == cut ? 0 : 1][axis] = values[at];
-    }
+    const auto value = [&](std::size_t i) { return cloud.position[i][axis]; };
+    bounds[0][axis] = value_at_rank(cloud.size(), cut, value);
+    bounds[1][axis] = value_at_rank(cloud.size(), cloud.size() - 1 - cut, value);
   }
   const Eigen::Vector3d middle = 0.5 * (bounds[0] + bounds[1]);
   const double far = outlier_distance * (bounds[1] - bounds[0]).maxCoeff();

@@ -1,16 +1,12 @@
 #pragma once
 /// The distinct positions of a cloud, in spatial order, and the nearest neighbours among them.
+#include "host/cloud/site_tree.h"
+#include "octree/build/key_sort.h"
 #include <Eigen/Core>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
 namespace pointgi {
-
-struct Neighbour {
-  std::uint32_t site;
-  float distance2; ///< squared, local units
-};
 
 /// A "site" is a position that one or more points have. Sites are numbered along a Morton curve, so that loops over
 /// them touch memory in order and ranges of them are compact. Points that share a site are handed out together: a
@@ -32,7 +28,7 @@ public:
   /// World length of one local unit, a power of two.
   double unit() const { return unit_; }
   /// Local units.
-  const Eigen::Vector3d& position(std::uint32_t site) const { return position_[site]; }
+  Eigen::Vector3d position(std::uint32_t site) const { return Eigen::Vector3d::Map(position_[site].data()); }
   Eigen::Vector3d to_local(const Eigen::Vector3d& world) const;
 
   /// The points at a site, ascending.
@@ -47,24 +43,32 @@ public:
     return {point_.data() + first_point_[site], point_.data() + first_point_[site + 1]};
   }
 
-  /// The k nearest other sites, nearest first, into `out` (room for k). Returns how many there were: min(k, size() -
-  /// 1). Where several are equally far, which of them is last depends on the sites alone: not on threads, not on the
-  /// call.
+  /// The k nearest other sites, nearest first, equally far ones in ascending order, into `out` (room for k). Returns
+  /// how many there were: min(k, size() - 1). Several times faster where a thread asks for sites in ascending order.
   unsigned nearest(std::uint32_t site, unsigned k, Neighbour* out) const;
-  /// The same around any position in local units, sites at that very position included.
+  /// Finds the k nearest of every site, on all cores, and keeps them in 2 k bytes a site: nearest() then looks up as
+  /// many or fewer. For clouds that are gone through several times.
+  void keep_neighbours(unsigned k);
+  /// nearest() around any position in local units, sites at that very position included.
   unsigned nearest_to(const Eigen::Vector3d& local, unsigned k, Neighbour* out) const;
 
 private:
-  struct Tree;
   void choose_frame(const std::vector<Eigen::Vector3d>& positions);
-  void sort_points(const std::vector<Eigen::Vector3d>& positions);
+  Pool<KeyedIndex> sorted_points(const std::vector<Eigen::Vector3d>& positions) const;
+  void make_sites(const std::vector<Eigen::Vector3d>& positions, Pool<KeyedIndex>&& order);
 
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   double unit_ = 1.0;
-  std::vector<Eigen::Vector3d> position_;
-  std::vector<std::uint32_t> point_;       ///< points by site
-  std::vector<std::uint32_t> first_point_; ///< site -> index into point_; one more than there are sites
-  std::unique_ptr<Tree> tree_;
+  Pool<std::array<double, 3>> position_;
+  Pool<std::uint32_t> point_;       ///< points by site
+  Pool<std::uint32_t> first_point_; ///< site -> index into point_; one more than there are sites
+  std::unique_ptr<SiteTree> tree_;
+
+  unsigned kept_ = 0; ///< neighbours that are kept of each site
+  /// Neighbours less their site. Where one of them is too far along the curve for that the first is 0, which none can
+  /// be, and the next two are the low and the high half of the number of its list in far_neighbours_.
+  Pool<std::int16_t> near_neighbours_;
+  Pool<std::uint32_t> far_neighbours_;
 };
 
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #include "host/cloud/splat_size.h"
 #include "host/cloud/cell_polygon.h"
+#include "host/cloud/smooth_cell.h"
 #include "host/cloud/unfold.h"
 #include "octree/parallel.h"
 #include <algorithm>
@@ -80,9 +81,10 @@ struct Candidate {
 /// Makes the cells of one range of sites; holds the scratch space of a thread.
 class CellMaker {
 public:
-  CellMaker(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const std::vector<float>& spacing,
+  CellMaker(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
             bool faces_agree)
-      : sites_(sites), normals_(normals), spacing_(spacing), faces_agree_(faces_agree) {}
+      : sites_(sites), normals_(normals), site_normals_(spacing.normal), spacing_(spacing.spacing),
+        faces_agree_(faces_agree), one_a_site_(normals.size() == sites.size()) {}
 
   struct Cell {
     double area, reach; ///< local units
@@ -100,21 +102,22 @@ public:
 
   Cell cell(const Eigen::Vector3f& normal) {
     const TangentFrame frame(normal.cast<double>());
+    if (const std::optional<Cell> found = smooth_cell(frame)) return *found;
     for (std::size_t stage = 0;; ++stage) {
       const bool last = stage + 1 == neighbour_stages.size() || sites_.size() - 1 <= neighbour_stages[stage];
       const unsigned count = fetch(neighbour_stages[stage]);
-      lay_flat(frame, count);
       if (count > 0) {
         const double known = std::sqrt(static_cast<double>(near_[count - 1].distance2));
         CellPolygon polygon(known);
-        for (unsigned j = 0; j < candidates_; ++j)
-          polygon.cut(candidate_[j].offset);
+        lay_flat(frame, count, &polygon);
         const double reach = std::sqrt(polygon.reach2());
         // Exact; but a cell that reaches over to the next island of points is not meant, however exact.
         if (!polygon.open() && 2.0 * reach <= known && reach <= longest_reach * static_cast<double>(spacing_[site_]))
           return {polygon.area(), reach, false};
       }
-      if (last) return bounded_cell(count);
+      if (!last) continue;
+      lay_flat(frame, count, nullptr);
+      return bounded_cell(count);
     }
   }
 
@@ -125,34 +128,60 @@ private:
     return std::min(count, found_);
   }
 
+  /// The cell that most points have.
+  std::optional<Cell> smooth_cell(const TangentFrame& frame) {
+    if (fetch(SmoothCell::neighbours) < SmoothCell::neighbours) return {};
+    const Eigen::Vector3d origin = sites_.position(site_);
+    const double own = spacing_[site_], scale = 1.0 / own;
+    for (unsigned j = 0; j < SmoothCell::neighbours; ++j) {
+      const Eigen::Vector3d e = (sites_.position(near_[j].site) - origin) * scale;
+      smooth_.set(j, e.cast<float>(), normal_at(near_[j].site, frame.n));
+    }
+    const double known = std::sqrt(static_cast<double>(near_[SmoothCell::neighbours - 1].distance2)) / own;
+    const std::optional<SmoothCell::Cell> found = smooth_.find(frame, std::min(known, 2.0 * longest_reach));
+    if (!found) return {};
+    widening_ = 1.0 / std::clamp(smooth_.cosine(), least_cosine, 1.0);
+    return Cell{found->area * own * own, found->reach * own, false};
+  }
+
   /// Of the points at a neighbouring site the one that faces most alike: at a shared edge, the one on this side of it.
-  Eigen::Vector3d normal_at(std::uint32_t site, const Eigen::Vector3d& like) const {
+  Eigen::Vector3f normal_at(std::uint32_t site, const Eigen::Vector3d& like) const {
+    Eigen::Vector3f best = site_normals_[site];
+    if (one_a_site_ && faces_agree_) return best;
     const Sites::Points points = sites_.points(site);
-    Eigen::Vector3d best = normals_[*points.begin()].cast<double>();
     double alike = agreement(best, like);
     for (std::size_t p = 1; p < std::min<std::size_t>(points.size(), alike_candidates); ++p) {
-      const Eigen::Vector3d other = normals_[points.first[p]].cast<double>();
+      const Eigen::Vector3f& other = normals_[points.first[p]];
       if (agreement(other, like) <= alike) continue;
       best = other;
       alike = agreement(other, like);
     }
-    return faces_agree_ || best.dot(like) >= 0 ? best : Eigen::Vector3d(-best);
+    return faces_agree_ || best.cast<double>().dot(like) >= 0 ? best : Eigen::Vector3f(-best);
   }
-  double agreement(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
-    return faces_agree_ ? a.dot(b) : std::abs(a.dot(b));
+  double agreement(const Eigen::Vector3f& a, const Eigen::Vector3d& b) const {
+    const double cosine = a.cast<double>().dot(b);
+    return faces_agree_ ? cosine : std::abs(cosine);
   }
 
-  void lay_flat(const TangentFrame& frame, unsigned count) {
+  /// Fills candidate_. With a polygon, cuts it, and leaves out what would not change it.
+  void lay_flat(const TangentFrame& frame, unsigned count, CellPolygon* polygon) {
     candidates_ = 0;
     std::array<double, spacing_neighbours> cosine;
     const Eigen::Vector3d& origin = sites_.position(site_);
     const double usual = spacing_[site_];
     for (unsigned j = 0; j < count; ++j) {
       const std::uint32_t other = near_[j].site;
+      const bool is_near = candidates_ < spacing_neighbours; // these tell of roughness, too
+      const bool can_be_left_out = polygon != nullptr && !is_near;
+      const auto distance2 = static_cast<double>(near_[j].distance2);
+      if (can_be_left_out && polygon->is_beyond(shortest_path2(distance2, usual))) break; // and so are all that follow
       Candidate& candidate = candidate_[candidates_];
-      const Eigen::Vector3d normal = normal_at(other, frame.n);
-      if (!unfold(frame, normal, sites_.position(other) - origin, usual, candidate.offset)) continue;
-      if (candidates_ < spacing_neighbours) cosine[candidates_] = normal.dot(frame.n);
+      const Eigen::Vector3d normal = normal_at(other, frame.n).cast<double>();
+      const Eigen::Vector3d e = sites_.position(other) - origin;
+      if (can_be_left_out && polygon->is_beyond(shortest_path2(frame, normal, e))) continue;
+      if (!unfold(frame, normal, e, usual, candidate.offset)) continue;
+      if (polygon != nullptr) polygon->cut(candidate.offset);
+      if (is_near) cosine[candidates_] = normal.dot(frame.n);
       candidate.spacing = spacing_[other];
       ++candidates_;
     }
@@ -231,12 +260,14 @@ private:
 
   const Sites& sites_;
   const std::vector<Eigen::Vector3f>& normals_;
+  const std::vector<Eigen::Vector3f>& site_normals_;
   const std::vector<float>& spacing_;
-  bool faces_agree_;
+  bool faces_agree_, one_a_site_;
   std::uint32_t site_ = 0;
   unsigned found_ = 0;
   unsigned candidates_ = 0;
   double widening_ = 1.0;
+  SmoothCell smooth_;
   std::array<Neighbour, neighbour_stages.back()> near_;
   std::array<Candidate, neighbour_stages.back()> candidate_;
   std::array<double, neighbour_stages.back() + 1> angle_;
@@ -275,6 +306,11 @@ SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>&
   SiteSpacing result;
   result.spacing.assign(sites.size(),
                         static_cast<float>(std::sqrt(2.0) / splat_overlap)); // a square for a disc of radius 1
+  if (!normals.empty()) result.normal.resize(sites.size());
+  parallel_ranges(result.normal.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      result.normal[s] = normals[*sites.points(static_cast<std::uint32_t>(s)).begin()];
+  });
   if (sites.size() == 1) return result;
   std::atomic<std::uint64_t> pairs{0}, opposite{0};
   parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -285,12 +321,12 @@ SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>&
       const unsigned count = sites.nearest(site, spacing_neighbours, near.data());
       result.spacing[s] = std::max(spacing_of(near.data(), count), 1e-18f);
       if (normals.empty()) continue;
-      const Eigen::Vector3f& normal = normals[*sites.points(site).begin()];
+      const Eigen::Vector3f& normal = result.normal[s];
       for (unsigned j = 0; j < count; ++j) {
         const Eigen::Vector3f e = (sites.position(near[j].site) - sites.position(site)).cast<float>();
         if (std::abs(e.dot(normal)) > 0.5f * e.norm()) continue; // above or below, not beside
         ++pairs_here;
-        opposite_here += oppose(normal, normals[*sites.points(near[j].site).begin()], e);
+        opposite_here += oppose(normal, result.normal[near[j].site], e);
       }
     }
     pairs += pairs_here;
@@ -310,24 +346,31 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
   const double unit = sites.unit();
   const double usual = median(spacing.spacing);
   parallel_ranges(sites.size(), 512, [&](std::size_t begin, std::size_t end) {
-    CellMaker maker(sites, normals, spacing.spacing, faces_agree);
+    CellMaker maker(sites, normals, spacing, faces_agree);
     std::size_t capped_here = 0;
     for (std::size_t s = begin; s < end; ++s) {
       const auto site = static_cast<std::uint32_t>(s);
       const Sites::Points points = sites.points(site);
-      const Sharing sharing(points, normals, faces_agree);
       maker.go_to(site);
+      const auto set = [&](std::uint32_t point, const CellMaker::Cell& cell, double sharing) {
+        // A clump of stray points far from the rest is sparse and open: its discs stay in the size of the others'.
+        const bool stray = cell.capped && spacing.spacing[s] > stray_factor * usual;
+        const double reach = stray ? std::min(cell.reach, stray_factor * usual) : cell.reach;
+        sizes.radius[point] = positive_float(reach * splat_overlap * (noisy ? maker.widening() : 1.0) * unit);
+        sizes.area[point] = positive_float(cell.area / sharing * unit * unit);
+        capped_here += cell.capped;
+      };
+      if (points.size() == 1) {
+        set(*points.begin(), maker.cell(spacing.normal[s]), 1.0);
+        continue;
+      }
+      const Sharing sharing(points, normals, faces_agree);
       CellMaker::Cell cell{};
       const Eigen::Vector3f* before = nullptr;
       for (const std::uint32_t point : points) {
         if (before == nullptr || normals[point] != *before) cell = maker.cell(normals[point]);
         before = &normals[point];
-        // A clump of stray points far from the rest is sparse and open: its discs stay in the size of the others'.
-        const bool stray = cell.capped && spacing.spacing[s] > stray_factor * usual;
-        const double reach = stray ? std::min(cell.reach, stray_factor * usual) : cell.reach;
-        sizes.radius[point] = positive_float(reach * splat_overlap * (noisy ? maker.widening() : 1.0) * unit);
-        sizes.area[point] = positive_float(cell.area / sharing.with(point) * unit * unit);
-        capped_here += cell.capped;
+        set(point, cell, sharing.with(point));
       }
     }
     capped += capped_here;

@@ -6,7 +6,8 @@ namespace pointgi {
 
 /// How far apart sites are and whether neighbours face the same way.
 struct SiteSpacing {
-  std::vector<float> spacing; ///< a value a site, local units: the side of a square that holds one point; > 0
+  std::vector<float> spacing;          ///< a value a site, local units: the side of a square that holds one point; > 0
+  std::vector<Eigen::Vector3f> normal; ///< of the first point at each site: beside its neighbours' in memory, too
   double opposite = 0; ///< share, 0 .. 1, of neighbours side by side on the surface whose normals oppose each other
 };
 

@@ -59,16 +59,28 @@ inline bool unfold(const TangentFrame& at, const Eigen::Vector3d& n, const Eigen
   // Smooth: what the chord has in the plane half-way between the two tangent planes, so that noise along the normals
   // does not lengthen it, and then the arc over that chord: asin(t)/t with t = sin of half the angle of the normals.
   const Eigen::Vector3d middle = at.n + n;
-  const double height = e.dot(middle) / middle.norm();
-  const double chord2 = std::max(0.0, e.squaredNorm() - height * height);
-  if (std::abs(height) > std::max(detail::steepest * std::sqrt(chord2), spacing)) return false;
+  const double along = e.dot(middle), height2 = along * along / middle.squaredNorm();
+  const double chord2 = std::max(0.0, e.squaredNorm() - height2);
+  if (height2 > std::max(detail::steepest * detail::steepest * chord2, spacing * spacing)) return false;
   const double t2 = cosine < detail::crease_cosine ? 0.0 : std::max(0.0, 0.5 * (1.0 - cosine));
-  const double arc = std::sqrt(chord2) * (1.0 + t2 * (1.0 / 6.0 + t2 * (3.0 / 40.0)));
   offset = at.flat(e);
-  const double flat = offset.norm();
-  if (!(flat > 1e-6 * spacing)) return false; // straight above: no direction to go
-  offset *= arc / flat;
+  const double flat2 = offset.squaredNorm();
+  if (!(flat2 > 1e-12 * spacing * spacing)) return false; // straight above: no direction to go
+  offset *= std::sqrt(chord2 / flat2) * (1.0 + t2 * (1.0 / 6.0 + t2 * (3.0 / 40.0)));
   return true;
+}
+
+/// No offset that unfold() gives for a neighbour at this squared distance is shorter than the root of this: its height
+/// over the plane is bounded.
+inline double shortest_path2(double distance2, double spacing) {
+  return std::min(distance2 / (1.0 + detail::steepest * detail::steepest), distance2 - spacing * spacing);
+}
+
+/// The same for a neighbour at `e` with normal `n`.
+inline double shortest_path2(const TangentFrame& at, const Eigen::Vector3d& n, const Eigen::Vector3d& e) {
+  const Eigen::Vector3d middle = at.n + n;
+  const double along = e.dot(middle);
+  return e.squaredNorm() - along * along / middle.squaredNorm(); // NaN for opposed normals, which compares as short
 }
 
 } // namespace pointgi

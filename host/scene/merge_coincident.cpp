@@ -1,8 +1,10 @@
 #include "host/scene/merge_coincident.h"
+#include "octree/build/cell_key.h"
+#include "octree/build/key_sort.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 namespace pointgi {
 
@@ -64,19 +66,47 @@ struct Sum {
   }
 };
 
+bool same_place(const Splat& a, const Splat& b) {
+  return std::memcmp(a.position, b.position, sizeof a.position) == 0 && a.material == b.material;
+}
+
+/// Splats of one place and material follow each other, by index: in cells along a curve, which are sorted by their
+/// digits, and compared only with what is in the same cell.
+std::vector<std::uint32_t> order_by_place(const std::vector<Splat>& splats) {
+  constexpr std::size_t grain = 1 << 14;
+  Pool<KeyedIndex> items(splats.size());
+  parallel_ranges(items.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      items[i] = {morton_key(cell_of(splats[i].position)), static_cast<std::uint32_t>(i)};
+  });
+  sort_by_key(items);
+  const std::vector<std::size_t> cuts =
+      cuts_between_keys(items.size(), grain, [&](std::size_t i) { return items[i].key; });
+  std::vector<std::uint32_t> order(splats.size());
+  parallel_ranges(cuts.size() - 1, 1, [&](std::size_t range, std::size_t) {
+    for (std::size_t i = cuts[range], past; i < cuts[range + 1]; i = past) {
+      order[i] = items[i].index;
+      for (past = i + 1; past < cuts[range + 1] && items[past].key == items[i].key; ++past)
+        order[past] = items[past].index;
+      if (past == i + 1) continue;
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(i), order.begin() + static_cast<std::ptrdiff_t>(past),
+                [&](std::uint32_t a, std::uint32_t b) {
+                  return before(splats[a], splats[b]) || (!before(splats[b], splats[a]) && a < b);
+                });
+    }
+  });
+  return order;
+}
+
 } // namespace
 
 std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id,
                                           std::vector<CoincidentSides>* pairs) {
-  std::vector<std::uint32_t> order(splats.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return before(splats[a], splats[b]) || (!before(splats[b], splats[a]) && a < b);
-  });
+  const std::vector<std::uint32_t> order = order_by_place(splats);
   std::vector<bool> gone(splats.size(), false);
   std::vector<MergedSplat> merged;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    for (end = begin + 1; end < order.size() && !before(splats[order[begin]], splats[order[end]]);)
+    for (end = begin + 1; end < order.size() && same_place(splats[order[begin]], splats[order[end]]);)
       ++end;
     if (end == begin + 1) continue;
     std::vector<std::pair<std::uint32_t, Sum>> sides; // a few: fronts, backs, the faces at a corner

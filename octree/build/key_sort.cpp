@@ -2,6 +2,7 @@
 #include "octree/parallel.h"
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <vector>
 
 namespace pointgi {
@@ -117,9 +118,19 @@ private:
   unsigned shift_ = 0;
 };
 
+bool is_sorted(const Pool<KeyedIndex>& items) {
+  std::atomic<bool> sorted{true};
+  parallel_ranges(items.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    const auto past = items.begin() + static_cast<std::ptrdiff_t>(std::min(end + 1, items.size()));
+    if (sorted && !std::is_sorted(items.begin() + static_cast<std::ptrdiff_t>(begin), past, before)) sorted = false;
+  });
+  return sorted;
+}
+
 } // namespace
 
 void sort_by_key(Pool<KeyedIndex>& items) {
+  if (is_sorted(items)) return;
   Pool<KeyedIndex> scratch(items.size() > few ? items.size() : 0);
   if (Sorter::sort(items.data(), scratch.data(), items.size()) != items.data()) items.swap(scratch);
 }

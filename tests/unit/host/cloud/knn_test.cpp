@@ -139,3 +139,92 @@ TEST_CASE("sites do not depend on the number of threads", "[cloud][knn]") {
   }
   omp_set_num_threads(threads);
 }
+
+namespace {
+
+bool same(const std::vector<Neighbour>& a, const std::vector<Neighbour>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Neighbour& one, const Neighbour& other) {
+    return one.site == other.site && one.distance2 == other.distance2;
+  });
+}
+
+std::vector<Neighbour> neighbours(const Sites& sites, std::uint32_t site, unsigned k) {
+  std::vector<Neighbour> near(k);
+  near.resize(sites.nearest(site, k, near.data()));
+  return near;
+}
+
+/// Clouds on which searches go wrong: equal distances, densities a thousand times apart, lines, a point far off.
+std::vector<Vector3d> uneven_points(std::uint64_t seed) {
+  std::vector<Vector3d> points = random_points(1500, seed);
+  for (int x = 0; x < 30; ++x)
+    for (int y = 0; y < 30; ++y)
+      points.emplace_back(2 + 0.125 * x, 0.125 * y, 0.5); // equally far, exactly
+  for (const Vector3d& p : random_points(3000, seed + 1))
+    points.push_back(1e-3 * p + Vector3d(0.3, 0.1, -0.2));
+  for (int i = 0; i < 300; ++i)
+    points.emplace_back(-3 + 0.01 * i, 2, 0);
+  points.emplace_back(1e7, 0, 0);
+  return points;
+}
+
+} // namespace
+
+TEST_CASE("neighbours are the same in whatever order sites are asked for", "[cloud][knn]") {
+  const Sites sites(uneven_points(7));
+  const unsigned k = GENERATE(1u, 6u, 20u, 70u, 160u);
+  std::vector<std::vector<Neighbour>> backwards(sites.size());
+  for (std::uint32_t site = sites.size(); site-- > 0;) // each is searched for on its own
+    backwards[site] = neighbours(sites, site, k);
+  std::size_t different = 0;
+  for (std::uint32_t site = 0; site < sites.size(); ++site) // by leaves
+    different += same(neighbours(sites, site, k), backwards[site]) ? 0u : 1u;
+  CHECK(different == 0);
+  different = 0;
+  for (std::uint32_t site = 0; site < sites.size(); ++site) {
+    const unsigned other_k = site % 3 == 0 ? 160 : k;
+    const std::vector<Neighbour> near = neighbours(sites, site, other_k);
+    different += same({near.begin(), near.begin() + k}, backwards[site]) ? 0u : 1u;
+  }
+  CHECK(different == 0);
+}
+
+TEST_CASE("of equally far neighbours the first along the curve comes first", "[cloud][knn]") {
+  const Sites sites(uneven_points(8));
+  for (std::uint32_t site = 0; site < sites.size(); ++site) {
+    const std::vector<Neighbour> near = neighbours(sites, site, 20);
+    for (std::size_t j = 1; j < near.size(); ++j)
+      if (near[j - 1].distance2 > near[j].distance2 ||
+          (near[j - 1].distance2 == near[j].distance2 && near[j - 1].site >= near[j].site))
+        FAIL("site " << site << ", neighbour " << j);
+  }
+}
+
+TEST_CASE("the neighbours that are kept are those that are found", "[cloud][knn]") {
+  // More sites than 16 bits count, so that some neighbours lie far off along the curve.
+  std::vector<Vector3d> points = random_points(100'000, 9);
+  for (Vector3d& p : points)
+    p.z() = 0.1 * p.x() * p.y();
+  const std::vector<Vector3d> uneven = uneven_points(10);
+  points.insert(points.end(), uneven.begin(), uneven.end());
+  Sites sites(points);
+  std::vector<std::vector<Neighbour>> found;
+  for (std::uint32_t site = 0; site < sites.size(); ++site)
+    found.push_back(neighbours(sites, site, 20));
+  sites.keep_neighbours(20);
+  std::size_t different = 0, far = 0;
+  for (std::uint32_t site = 0; site < sites.size(); ++site) {
+    different += same(neighbours(sites, site, 20), found[site]) ? 0u : 1u;
+    different += same(neighbours(sites, site, 6), {found[site].begin(), found[site].begin() + 6}) ? 0u : 1u;
+    for (const Neighbour& near : found[site])
+      far += std::max(near.site, site) - std::min(near.site, site) > 40000 ? 1u : 0u;
+  }
+  CHECK(different == 0);
+  CHECK(far > 100);
+  std::vector<Neighbour> more = neighbours(sites, 77, 56);
+  more.resize(20);
+  CHECK(same(more, found[77]));
+  Sites few({Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(3, 0, 0)});
+  few.keep_neighbours(20); // there are not as many
+  CHECK(neighbours(few, 0, 20).size() == 2);
+}

@@ -190,7 +190,8 @@ TEST_CASE("coincident points share a cell", "[cloud][splat_size]") {
   const PointCloud single = sized(once), shared = sized(cloud);
   CHECK(total(shared.area) == Approx(total(single.area)).epsilon(1e-5)); // sums of floats
   for (std::size_t i = 0; i < once.size(); ++i) {
-    CHECK(shared.radius[i] == single.radius[i]);
+    // The copies move the median, which coordinates are counted from: some ten roundings of floats differ.
+    CHECK(static_cast<double>(shared.radius[i]) == Approx(static_cast<double>(single.radius[i])).epsilon(1e-5));
     CHECK(static_cast<double>(shared.area[i]) == Approx(static_cast<double>(single.area[i]) / (i % 3 == 0 ? 3 : 1)));
   }
 }

@@ -52,3 +52,24 @@ TEST_CASE("keys are sorted as a stable comparison sort sorts them") {
   }
   CHECK(sorts(keys));
 }
+
+TEST_CASE("cuts lie between different keys, and ranges are about as long as asked for") {
+  std::mt19937_64 g(4);
+  Pool<KeyedIndex> items;
+  std::uint64_t key = 0;
+  while (items.size() < 50'000) {
+    const std::size_t run = g() % 100 == 0 ? 3000 : 1 + g() % 3;
+    for (std::size_t k = 0; k < run; ++k)
+      items.push_back({key, static_cast<std::uint32_t>(items.size())});
+    key += 1 + g() % 5;
+  }
+  const auto cuts = cuts_between_keys(items.size(), 1000, [&](std::size_t i) { return items[i].key; });
+  CHECK(cuts.front() == 0);
+  CHECK(cuts.back() == items.size());
+  for (std::size_t c = 1; c < cuts.size(); ++c) {
+    CHECK(cuts[c] > cuts[c - 1]);
+    CHECK(cuts[c] - cuts[c - 1] < 1000 + 3000);
+    if (cuts[c] < items.size()) CHECK(items[cuts[c]].key != items[cuts[c] - 1].key);
+  }
+  CHECK(cuts_between_keys(0, 1000, [](std::size_t) { return 0; }) == std::vector<std::size_t>{0});
+}
