@@ -146,6 +146,14 @@ int height_axis(const Sites& sites, const Extent& extent, const std::vector<Eige
   return share > single_valued && layers.kurtosis > two_sheets ? thin : -1;
 }
 
+/// -1 where given normals face down the axis, as in coordinates that count downwards.
+double side_along(const std::vector<Eigen::Vector3f>& normals, int axis, const KindHints& hints) {
+  double sum = 0;
+  for (const Eigen::Vector3f& n : normals)
+    sum += static_cast<double>(n[axis]);
+  return hints.signs_given && sum < 0 ? -1.0 : 1.0;
+}
+
 /// Whether normals that have signs point to the middle of the sites.
 bool points_inwards(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const Extent& extent) {
   const Eigen::Vector3d middle = 0.5 * (extent.low + extent.high);
@@ -221,7 +229,9 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>&,
     std::snprintf(text, sizeof text, "%.1f %% of the points have one depth a direction from the origin, %s",
                   100.0 * view.one_depth,
                   view.lattice ? "in rows and columns as pixels have" : "evenly spread over the directions");
-    const bool frame = view.lattice;
+    // A scanner that turns looks along the ground, a depth camera along its own z.
+    const Eigen::Vector3d ahead = (extent_of(sites, structure).low + extent_of(sites, structure).high) / 2 - origin;
+    const bool frame = view.lattice || (!view.all_around && std::abs(ahead.z()) > 0.8 * ahead.norm() && !hints.up);
     return {frame ? CloudKind::depth_frame : CloudKind::station, text, Eigen::Vector3d(Eigen::Vector3d::Zero()),
             frame ? hints.up : hints.up.value_or(Eigen::Vector3d::UnitZ())};
   }
@@ -231,7 +241,7 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>&,
     return {CloudKind::terrain,
             "one height at " + percent(share) + " of the places",
             {},
-            hints.up.value_or(Eigen::Vector3d::Unit(axis))};
+            hints.up ? *hints.up : Eigen::Vector3d(Eigen::Vector3d::Unit(axis) * side_along(normals, axis, hints))};
   const auto volume = std::count(structure.begin(), structure.end(), Structure::volume);
   if (static_cast<double>(volume) > mostly_volume * sites.size())
     return {CloudKind::foliage,

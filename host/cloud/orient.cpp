@@ -13,6 +13,7 @@ namespace {
 constexpr double farthest_sensor = 10.0; // times the size of the cloud
 constexpr unsigned patch_samples = 200;  // sites of a patch that are asked what they see
 constexpr double clear_vote = 0.15;      // of the votes of a patch: less is nearly a tie
+constexpr double gravity_weight = 0.7;
 constexpr std::size_t smallest_patch = 30;
 
 // |sum of A n| / sum of A: 0 for closed surfaces, 1 for planes, 1/2 for a hemisphere.
@@ -169,13 +170,14 @@ double vote_of_space(const Sites& sites, const FreeSpace& space, const std::vect
   return front + back > 0.05 * static_cast<double>(sample.size()) ? (front - back) / (front + back) : 0.0;
 }
 
-/// 1 to leave a patch, -1 to turn it, 0: nothing tells.
-int side_of(const TreeShape& shape, double eyes, double space, bool inward) {
+/// 1 to leave a patch, -1 to turn it, 0: nothing tells. `up`: how much of a patch of a map faces up, -1 .. 1; what is
+/// scanned there is mostly seen from above.
+int side_of(const TreeShape& shape, double eyes, double space, double up, bool inward) {
   if (std::abs(eyes) > clear_vote) return eyes < 0 ? -1 : 1;
   const bool closed = shape.openness() < 0.1 && std::abs(shape.outward()) > 0.2;
   if (closed) return (shape.volume < 0) != inward ? -1 : 1;
-  if (std::abs(space) > clear_vote) return (space < 0) != inward ? -1 : 1;
-  return 0;
+  const double vote = inward ? -space : space + gravity_weight * up;
+  return std::abs(vote) > clear_vote ? (vote < 0 ? -1 : 1) : 0;
 }
 
 /// What single places see: 1 only their front faces open space, -1 only their back does, 0 anything else.
@@ -238,6 +240,8 @@ Orientation turn_patches(const Sites& sites, const OrientationEvidence& evidence
   for (const Eigen::Vector3d& eye : evidence.eyes)
     eyes.push_back(sites.to_local(eye));
   const bool inward = evidence.kind.kind == CloudKind::room;
+  const Eigen::Vector3d up =
+      evidence.kind.kind == CloudKind::map && evidence.kind.up ? *evidence.kind.up : Eigen::Vector3d(0, 0, 0);
   std::vector<int> side(forest.trees, 0);
   std::vector<char> decided(forest.trees, 0), by_eyes(forest.trees, 0);
   parallel_ranges(forest.trees, 8, [&](std::size_t begin, std::size_t end) {
@@ -245,7 +249,8 @@ Orientation turn_patches(const Sites& sites, const OrientationEvidence& evidence
       if (shapes[t].sites < smallest_patch && forest.trees > 1) continue;
       const double seen = eyes.empty() ? 0.0 : vote_of_eyes(sites, eyes, space, samples[t], normals);
       by_eyes[t] = std::abs(seen) > clear_vote;
-      side[t] = side_of(shapes[t], seen, by_eyes[t] ? 0.0 : vote_of_space(sites, space, samples[t], normals), inward);
+      const double seen_from = by_eyes[t] ? 0.0 : vote_of_space(sites, space, samples[t], normals);
+      side[t] = side_of(shapes[t], seen, seen_from, shapes[t].vector_area.dot(up) / shapes[t].area, inward);
       decided[t] = side[t] != 0;
     }
   });

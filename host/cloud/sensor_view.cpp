@@ -15,10 +15,10 @@ constexpr unsigned seen_neighbours = 4;
 
 // A Kinect's frame has a one_depth of 0.995, airborne lidar 0.67, closed objects seen from outside 0.5 to 0.75, a
 // photogrammetric cloud seen from an arbitrary origin 0.92.
-constexpr double least_one_depth = 0.95;
+constexpr double least_one_depth = 0.97;
 constexpr double farthest_sensor = 10.0;   // sizes of the cloud
 constexpr double least_range_ratio = 1.35; // of a cloud whose evenness tells something
-constexpr double least_evenness = -0.5;    // half-way between a scanner's and an object's
+constexpr double least_evenness = -0.25;   // scanners have -0.01 to 0.2, sparse points of structure from motion -0.4
 
 double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -178,7 +178,9 @@ ChosenView choose_camera(Scene& scene, const WorldSplats& splats) {
   view.up = up.up;
   const bool is_scan = view.kind == CloudKind::room || view.kind == CloudKind::station;
   view.is_closed_room = is_scan && has_ceiling(points, view.up);
-  if (!scene.camera.backfaces && is_scan) scene.camera.backfaces = Backfaces::see_through;
+  // Of what is open backs would be seen, and they are black.
+  const bool is_open = is_scan || view.kind != CloudKind::model || points.mean_normal.norm() > 0.1;
+  if (!scene.camera.backfaces && is_open) scene.camera.backfaces = Backfaces::see_through;
   const std::string shown = look(scene, splats, points, view);
   const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
   view.sentence = fmt::format(
