@@ -247,8 +247,8 @@ void warn_of_degenerate(const Sites& sites, std::size_t points, CloudReport& rep
 }
 
 /// Discs of a scan no larger than what lies around vouches for: lines as wide as their points are apart, leaves and
-/// noise as their own, surfaces by the spacing around.
-void limit_sizes(PointCloud& cloud, const Sites& sites, const Found& found) {
+/// noise as their own, surfaces by the spacing around; points of structure from motion no wider than their own.
+void limit_sizes(PointCloud& cloud, const Sites& sites, const Found& found, bool sparse) {
   const auto unit = static_cast<float>(sites.unit());
   parallel_ranges(sites.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, limit_neighbours> near;
@@ -263,6 +263,7 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const Found& found) {
       const Structure structure = found.structure[s];
       const float most = structure == Structure::line     ? second
                          : structure == Structure::volume ? 0.75f * third
+                         : sparse                         ? std::min(found.spacing[s], spacing[count / 2])
                                                           : most_spacings * spacing[count / 2];
       for (const std::uint32_t point : sites.points(static_cast<std::uint32_t>(s))) {
         if (cloud.radius[point] <= most * unit) continue;
@@ -324,7 +325,7 @@ void complete_body(PointCloud& cloud, const Sites& sites, const CompleteOptions&
     for (std::uint32_t s = 0; s < sites.size(); ++s)
       for (const std::uint32_t point : sites.points(s))
         cloud.structure[point] = found.structure[s];
-    if (!own_radii && !sampled) limit_sizes(cloud, sites, found);
+    if (!own_radii && !sampled) limit_sizes(cloud, sites, found, report.kind == CloudKind::sparse);
     if (report.kind == CloudKind::foliage) // leaves are seen from both sides
       std::replace(cloud.structure.begin(), cloud.structure.end(), Structure::surface, Structure::sheet);
   }

@@ -20,6 +20,9 @@ constexpr double many_enclosed = 0.3;  // share of sites with both sides enclose
 constexpr double on_the_walls = 0.8;   // share of sites, of an empty box
 constexpr double mostly_volume = 0.5;
 constexpr double edge_on = 0.1;
+// Structure from motion has 4.4 to 10, dense clouds and models 1 to 4; of scans from one station that are as uneven the
+// sensor is known.
+constexpr double uneven = 4.3;
 
 std::string percent(double share) {
   char text[32];
@@ -163,6 +166,16 @@ bool points_inwards(const Sites& sites, const std::vector<Eigen::Vector3f>& norm
   return sum > 0.5 * sites.size();
 }
 
+/// The spacing that nine tenths of the sites stay below, over that of one tenth.
+double unevenness(std::vector<float> spacing) {
+  const auto at = [&](double share) {
+    const auto place = spacing.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(spacing.size() - 1));
+    std::nth_element(spacing.begin(), place, spacing.end());
+    return static_cast<double>(*place);
+  };
+  return at(0.9) / at(0.1);
+}
+
 /// Median of the cosine under which the sensor sees the surface: near 0, and it cannot have scanned it.
 double median_cosine(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const Eigen::Vector3d& sensor) {
   const std::uint32_t step = std::max(1u, sites.size() / looked_at);
@@ -216,7 +229,7 @@ double enclosed_share(const Sites& sites, const std::vector<Eigen::Vector3f>& no
 
 } // namespace
 
-RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>&,
+RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spacing,
                               const std::vector<Eigen::Vector3f>& normals, const std::vector<Structure>& structure,
                               const FreeSpace& space, const KindHints& hints) {
   if (hints.has_stations)
@@ -242,6 +255,11 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>&,
             "one height at " + percent(share) + " of the places",
             {},
             hints.up ? *hints.up : Eigen::Vector3d(Eigen::Vector3d::Unit(axis) * side_along(normals, axis, hints))};
+  if (const double step = unevenness(spacing); step > uneven && !hints.up) {
+    char text[80];
+    std::snprintf(text, sizeof text, "the spacing of its points differs by a factor of %.1f", step);
+    return {CloudKind::sparse, text, {}, hints.up};
+  }
   const auto volume = std::count(structure.begin(), structure.end(), Structure::volume);
   if (static_cast<double>(volume) > mostly_volume * sites.size())
     return {CloudKind::foliage,

@@ -95,8 +95,9 @@ void take_colours_from_fields(PointCloud& cloud, const CloudSettings& settings, 
                               CloudReport& report) {
   if (material.albedo_field)
     colours_from_fields(material, settings.file, cloud, report);
-  else if (!material.albedo && cloud.colour.empty() && exchanges_light(material))
-    colours_from_intensity(cloud, report);
+  else if (!material.albedo && cloud.colour.empty() && report.triangles == 0 && exchanges_light(material))
+    colours_from_intensity(cloud,
+                           report); // meshes keep the intensity of their scans, which is no picture of the surface
   cloud.fields = {};
 }
 

@@ -98,7 +98,6 @@ UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye) 
   switch (kind) {
   case CloudKind::station:
   case CloudKind::map:
-  case CloudKind::foliage:
     return of_axis(2, 1.0, "as scans of land have it");
   case CloudKind::terrain:
     return of_terrain(points);
@@ -109,6 +108,7 @@ UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye) 
   case CloudKind::sparse:
     return of_sparse(points);
   case CloudKind::model:
+  case CloudKind::foliage:
     return standing_up(points);
   }
   return standing_up(points);
