@@ -60,8 +60,8 @@ TEST_CASE("wrong overrides are reported under their own text", "[scene]") {
         "--set render.spp=many: render.spp: expected an integer from 1 to 65536, found \"many\"");
   CHECK(error("render.ssp=4") == "--set render.ssp=4: render.ssp: unknown key; did you mean \"spp\"?");
   CHECK(error("rendr.spp=4") == "--set rendr.spp=4: rendr: unknown key; did you mean \"render\"?");
-  CHECK(error("camera.fov_deg=30") ==
-        "--set camera.fov_deg=30: camera.position: missing, expected three numbers from -1e18 to 1e18");
+  CHECK(error("camera.look_at=[0, 0, 0]") ==
+        "--set camera.look_at=[0, 0, 0]: camera.position: missing, expected three numbers from -1e18 to 1e18");
   CHECK(error("material.white.albedo=[1.2, 0, 0]") ==
         "--set material.white.albedo=[1.2, 0, 0]: material.white.albedo: expected three numbers from 0 to 1 (above 1 "
         "it would create energy), found [1.2, 0, 0]");
