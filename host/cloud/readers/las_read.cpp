@@ -94,7 +94,8 @@ void place(const PointCloud& cloud, const LasHeader& header, LasCoordinates coor
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& p : cloud.position)
       mean += p / static_cast<double>(cloud.size());
-    if (mean.norm() > 1e6) report.up = mean.normalized(); // away from the Earth's centre
+    // Away from the Earth's centre; files that only claim to be geocentric lie elsewhere. [m]
+    if (mean.norm() > 6.3e6 && mean.norm() < 6.45e6) report.up = mean.normalized();
     return;
   }
   if (coordinates == LasCoordinates::projected) return;
