@@ -38,7 +38,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.frame = placed.frame;
   ready.choice = choose_for(scene, session.info());
   ready.pools = build_pools(placed.splats, ready.choice.variant);
-  placed.splats = {};
+  std::vector<Splat>().swap(placed.splats); // assigning {} would keep its memory
   ready.first_ids = placed.first_ids;
   ready.file_order = std::move(placed.file_order);
   for (const std::uint32_t source : source_of(ready.pools))
