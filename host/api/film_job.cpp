@@ -63,11 +63,11 @@ std::string settings_text(const pointgi::Scene& scene, const std::string& integr
 }
 
 /// What the picture depends on: splats, lights, camera and samples, as the device reads them, and `settings`.
-std::uint64_t hash_of(const OctreePools& pools, const DeviceLighting& lighting, const std::string& settings) {
+std::uint64_t hash_of(const Pool<OctreePoint>& points, const DeviceLighting& lighting, const std::string& settings) {
   const auto bytes = [](const auto& v) {
     return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
   };
-  std::uint64_t hash = fnv1a(bytes(points_of(pools)), fnv1a(settings));
+  std::uint64_t hash = fnv1a(bytes(points), fnv1a(settings));
   hash = fnv1a(bytes(lighting.light_sources), hash);
   hash = fnv1a(bytes(lighting.materials), hash);
   if (lighting.sky != nullptr) {
@@ -115,7 +115,7 @@ PictureAttributes FilmJob::attributes() const {
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016llx",
                 static_cast<unsigned long long>(
-                    hash_of(prepared.ready.pools, lighting_, settings_text(view_, integrator, paths_))));
+                    hash_of(prepared.ready.points, lighting_, settings_text(view_, integrator, paths_))));
   attributes.text["software"] = "pointgi " POINTGI_VERSION;
   attributes.text["pointgi/device"] = device.name + " (" + device.platform + ")";
   attributes.text["pointgi/scene_hash"] = hash;

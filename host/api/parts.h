@@ -31,7 +31,7 @@ struct Prepared::Parts {
   pointgi::Scene scene; ///< with the camera and the lights that were chosen
   PreparedScene ready;
 
-  View<Splat> points() const { return points_of(ready.pools); }
+  View<Splat> points() const { return ready.points; }
 };
 
 struct Light::Parts {

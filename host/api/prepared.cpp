@@ -27,7 +27,7 @@ std::vector<double> Prepared::positions() const {
 }
 
 std::vector<unsigned> Prepared::ids() const {
-  return parts_->ready.ids;
+  return {parts_->ready.ids.begin(), parts_->ready.ids.end()};
 }
 
 Camera Prepared::camera() const {

@@ -43,7 +43,7 @@ Stats stats_of(const api::Light::Parts& light) {
   const api::Prepared::Parts& prepared = *light.prepared;
   Stats stats;
   stats.scene = &prepared.scene;
-  stats.octree = summary_of(prepared.ready.pools);
+  stats.octree = prepared.ready.octree;
   stats.session = &prepared.context->session;
   stats.indirect = &light.light.indirect;
   stats.variant = prepared.ready.choice;

@@ -17,13 +17,13 @@ cl::Memory upload_texels(Session& session, const void* texels, std::size_t count
   return session.upload(static_cast<const OctreeNode*>(texels), count).handle; // any 16-byte texel
 }
 
-} // namespace
-
-DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage) {
+/// `done(pool)` is called with each pool that is on the device.
+template <class Pools, class Done>
+DevicePools upload_step(Session& session, Pools& pools, PoolStorage storage, const Done& done) {
   static_assert(sizeof(OctreeNode) == 16, "pools are counted in 16-byte texels");
   DevicePools device;
   device.nodes = upload_texels(session, pools.nodes.data(), pools.nodes.size(), false, storage);
-  device.points = upload_texels(session, pools.points.data(), pools.points.size() * POINT_TEXELS, true, storage);
+  done(pools.nodes);
   if (storage == PoolStorage::buffer) {
     device.leaves = session.upload(pools.begin_end).handle;
   } else { // four entries a texel (kernels/lib/pools.cl)
@@ -31,11 +31,42 @@ DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage s
     padded.resize((padded.size() + 3) / 4 * 4, 0u);
     device.leaves = upload_texels(session, padded.data(), padded.size() / 4, false, storage);
   }
+  done(pools.begin_end);
+  device.points = upload_texels(session, pools.points.data(), pools.points.size() * POINT_TEXELS, true, storage);
   return device;
 }
 
+template <class Pools, class Done>
+DevicePools upload_wide(Session& session, Pools& pools, const Done& done) {
+  DevicePools device;
+  device.nodes = session.upload(pools.nodes).handle;
+  done(pools.nodes);
+  device.leaves = session.upload(pools.blocks).handle;
+  done(pools.blocks);
+  device.points = session.upload(pools.points).handle;
+  return device;
+}
+
+constexpr auto keep = [](const auto&) {};
+constexpr auto release = [](auto& pool) { std::decay_t<decltype(pool)>().swap(pool); };
+
+} // namespace
+
+DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage) {
+  return upload_step(session, pools, storage, keep);
+}
+
 DevicePools upload_pools(Session& session, const WidePools& pools) {
-  return {session.upload(pools.nodes).handle, session.upload(pools.blocks).handle, session.upload(pools.points).handle};
+  return upload_wide(session, pools, keep);
+}
+
+DevicePools move_pools(Session& session, OctreePools&& pools, PoolStorage storage, Pool<OctreePoint>& points) {
+  OctreePools moved = std::move(pools);
+  auto* wide = std::get_if<WidePools>(&moved);
+  const DevicePools device = wide != nullptr ? upload_wide(session, *wide, release)
+                                             : upload_step(session, std::get<StepPools>(moved), storage, release);
+  points = std::visit([](auto& p) { return std::move(p.points); }, moved);
+  return device;
 }
 
 DevicePools upload_pools(Session& session, const OctreePools& pools, PoolStorage storage) {

@@ -20,5 +20,7 @@ bool images_fit(const DeviceInfo& device, const OctreePools& pools, PoolStorage 
 DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage);
 DevicePools upload_pools(Session& session, const WidePools& pools);
 DevicePools upload_pools(Session& session, const OctreePools& pools, PoolStorage storage);
+/// Frees each pool when it is on the device. Only the points stay, and are returned.
+DevicePools move_pools(Session& session, OctreePools&& pools, PoolStorage storage, Pool<OctreePoint>& points);
 
 } // namespace pointgi

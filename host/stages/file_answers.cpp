@@ -13,7 +13,7 @@ std::vector<std::uint32_t> places_by_id(const PreparedScene& scene, bool backs) 
   for (const MergedSplat& merged : scene.file_order->merged)
     ids = std::max(ids, merged.id + 1);
   std::vector<std::uint32_t> place(std::max(ids, scene.file_order->points), FileAnswers::none);
-  const View<Splat> points = points_of(scene.pools);
+  const View<Splat> points = scene.points;
   for (std::uint32_t p = 0; p < points.size; ++p)
     if (is_back_of_sheet(points[p]) == backs) place[scene.ids[p]] = p;
   for (const MergedSplat& merged : scene.file_order->merged)
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> places_by_record(const PreparedScene& scene, bool bac
 } // namespace
 
 FileAnswers::FileAnswers(const PreparedScene& scene) : front_(places_by_record(scene, false)) {
-  const View<Splat> points = points_of(scene.pools);
+  const View<Splat> points = scene.points;
   if (std::any_of(points.begin(), points.end(), is_back_of_sheet)) back_ = places_by_record(scene, true);
 }
 

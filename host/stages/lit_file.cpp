@@ -61,7 +61,7 @@ public:
 private:
   bool is_lit(std::size_t record) const {
     const std::uint32_t point = answers_.front(record);
-    return point != FileAnswers::none && exchanges_light(scene_.materials[material_of(points_of(ready_.pools)[point])]);
+    return point != FileAnswers::none && exchanges_light(scene_.materials[material_of(ready_.points[point])]);
   }
 
   double value(const PlyColumn& column, std::size_t record, bool back) const {

@@ -10,12 +10,20 @@ namespace pointgi {
 namespace {
 
 /// Device memory as the variant wants it, plain buffers where the device's images are too small.
-DevicePools upload(Session& session, const OctreePools& pools, TraversalVariant& variant) {
+DevicePools upload(Session& session, OctreePools&& pools, TraversalVariant& variant, Pool<OctreePoint>& points) {
   if (!images_fit(session.info(), pools, variant.storage)) {
     log_warning("the device's images are missing or too small for the octree: plain buffers are used instead");
     variant.storage = PoolStorage::buffer;
   }
-  return upload_pools(session, pools, variant.storage);
+  return move_pools(session, std::move(pools), variant.storage, points);
+}
+
+/// In the order of the pool, in place of those of the splats.
+Pool<std::uint32_t> ids_of(const Pool<std::uint32_t>& source, const std::vector<std::uint32_t>& of_splats) {
+  Pool<std::uint32_t> ids(source.size());
+  for (std::size_t k = 0; k < source.size(); ++k)
+    ids[k] = of_splats[source[k]];
+  return ids;
 }
 
 /// The scene's wishes first, then what a profile of this device found, then the defaults of its class.
@@ -37,15 +45,15 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   stages.start("octree");
   ready.frame = placed.frame;
   ready.choice = choose_for(scene, session.info());
-  ready.pools = build_pools(placed.splats, ready.choice.variant);
+  OctreePools pools = build_pools(placed.splats, ready.choice.variant);
   std::vector<Splat>().swap(placed.splats); // assigning {} would keep its memory
+  ready.octree = summary_of(pools);
   ready.first_ids = placed.first_ids;
   ready.file_order = std::move(placed.file_order);
-  for (const std::uint32_t source : source_of(ready.pools))
-    ready.ids.push_back(placed.id[source]);
-  ready.on_device = upload(session, ready.pools, ready.choice.variant);
-  stages.finish(summary_of(ready.pools).nodes, "nodes");
-  ready.lighting = device_lighting(scene, ready.frame, points_of(ready.pools));
+  ready.ids = ids_of(source_of(pools), placed.id);
+  ready.on_device = upload(session, std::move(pools), ready.choice.variant, ready.points);
+  stages.finish(ready.octree.nodes, "nodes");
+  ready.lighting = device_lighting(scene, ready.frame, ready.points);
   return ready;
 }
 

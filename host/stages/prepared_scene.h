@@ -13,9 +13,10 @@ namespace pointgi {
 struct PreparedScene {
   Frame frame;
   VariantChoice choice;
-  OctreePools pools;
+  OctreeSummary octree;
+  Pool<OctreePoint> points; ///< the point pool
   DevicePools on_device;
-  std::vector<std::uint32_t> ids;       ///< of each point of the pool: its place among the kept points of the scene
+  Pool<std::uint32_t> ids;              ///< of each point of the pool: its place among the kept points of the scene
   std::vector<std::uint32_t> first_ids; ///< id of the first point of each cloud, then of each shape
   std::optional<FileOrder> file_order;  ///< as of PlacedSplats
   DeviceLighting lighting;

@@ -74,7 +74,7 @@ std::string advice_on_backs(const RenderTotals& totals, const Scene& scene) {
 
 bool warn_of_paths(const std::string& list, const Scene& scene, const PreparedScene& ready) {
   const DeviceLighting& lighting = ready.lighting;
-  const PathSupply supply{has_reflectors(scene, points_of(ready.pools)), lighting.has_specular(),
+  const PathSupply supply{has_reflectors(scene, ready.points), lighting.has_specular(),
                           lighting.has_flag(MATERIAL_HAS_LOBE), !lighting.emitters.empty() || lighting.has_environment,
                           !lighting.light_sources.empty()};
   const std::string reason = why_no_path(list, scene.render.max_depth, supply);
@@ -118,7 +118,7 @@ void warn_of_view(const RenderTotals& totals, const Scene& scene, const Prepared
                 advice_on_backs(totals, scene));
   if (totals.lit || totals.interrupted || already_warned || !ready.lighting.has_light()) return;
   if (totals.eye_rays_on_back_faces == totals.eye_rays_on_splats) return; // said above
-  const bool reflects = has_reflectors(scene, points_of(ready.pools)) || ready.lighting.has_specular();
+  const bool reflects = has_reflectors(scene, ready.points) || ready.lighting.has_specular();
   log_warning("the picture is all black: {}", reflects ? "no light reaches what the camera sees: " + suspects(scene)
                                                        : "nothing reflects light: give a material an albedo above 0");
 }

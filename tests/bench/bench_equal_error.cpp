@@ -46,8 +46,8 @@ public:
     StageLog stages;
     // What has no effect on paths is not worth a warning here.
     spdlog::set_level(by_paths ? spdlog::level::err : spdlog::level::warn);
-    const IndirectRequest request{ready_.choice.variant,   scene_,  ready_.frame, ready_.lighting,
-                                  points_of(ready_.pools), by_paths};
+    const IndirectRequest request{ready_.choice.variant, scene_,        ready_.frame,
+                                  ready_.lighting,       ready_.points, by_paths};
     Solved solved;
     solved.light = run_light_stages(session_, ready_.on_device, request, stages);
     if (!solved.light.indirect.from_surfaces.empty())
@@ -92,7 +92,7 @@ public:
   /// Of each pixel, the material of what stands there (PointId); -1: nothing.
   std::vector<int> materials_of(const Picture& picture) const {
     std::vector<int> of_id(ready_.ids.empty() ? 0 : *std::max_element(ready_.ids.begin(), ready_.ids.end()) + 1u, -1);
-    const View<Splat> points = points_of(ready_.pools);
+    const View<Splat> points = ready_.points;
     for (std::size_t i = 0; i < ready_.ids.size(); ++i)
       of_id[ready_.ids[i]] = static_cast<int>(points[i].material);
     std::vector<int> materials;
@@ -102,7 +102,7 @@ public:
   }
 
 private:
-  void light_device() { ready_.lighting = device_lighting(scene_, ready_.frame, points_of(ready_.pools)); }
+  void light_device() { ready_.lighting = device_lighting(scene_, ready_.frame, ready_.points); }
 
   Session& session_;
   Scene scene_;

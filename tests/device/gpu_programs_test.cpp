@@ -26,8 +26,8 @@ void make_picture(Session& session, Scene scene, const std::optional<LightPaths>
   StageLog stages;
   const PreparedScene ready = prepare_scene(session, scene, false, stages);
   const auto never = [] { return false; };
-  const IndirectRequest wanted{ready.choice.variant, scene, ready.frame, ready.lighting, points_of(ready.pools),
-                               paths.has_value()};
+  const IndirectRequest wanted{ready.choice.variant, scene,        ready.frame,
+                               ready.lighting,       ready.points, paths.has_value()};
   const SceneLight light = run_light_stages(session, ready.on_device, wanted, stages);
   RenderRequest request{{0, scene.render.width, 0, scene.render.height},
                         ready.lighting,
