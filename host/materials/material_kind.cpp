@@ -1,4 +1,5 @@
 #include "host/materials/material_kind.h"
+#include "host/scene/toml_words.h"
 
 namespace pointgi {
 
@@ -76,12 +77,12 @@ void load_diffuse_keys(const TableReader& table, MaterialSettings& material) {
   load_albedo(table, material);
   if (const auto emission = table.vector3("emission", limits::light)) material.emission = *emission;
   const toml::node* sides = table.find("two_sided");
-  if (sides == nullptr || (sides->is_string() && table.choice("two_sided", {"auto"}))) {
-    material.one_sided = false; // points without a side have two all the same
-  } else if (*table.boolean("two_sided")) {
-    material.flags |= MATERIAL_TWO_SIDED;
-  } else {
-    material.one_sided = true;
+  if (sides != nullptr && sides->value<std::string>() != "auto") { // else points without a side have two
+    if (!sides->is_boolean()) table.fail("two_sided", "expected true, false or \"auto\", found " + found_text(*sides));
+    if (*sides->value<bool>())
+      material.flags |= MATERIAL_TWO_SIDED;
+    else
+      material.one_sided = true;
   }
   if (const auto space = table.choice("colour_space", {"srgb", "linear"}))
     material.colour_space = *space == "srgb" ? ColourSpace::srgb : ColourSpace::linear;
