@@ -77,4 +77,11 @@ double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
   return *at;
 }
 
+/// The middle value, the upper one of two. At least one value.
+inline float median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #include "host/cloud/splat_size.h"
 #include "host/cloud/cell_polygon.h"
+#include "host/cloud/quantile.h"
 #include "host/cloud/smooth_cell.h"
 #include "host/cloud/unfold.h"
 #include "octree/parallel.h"
@@ -45,12 +46,6 @@ float neighbours_spacing(const Sites& sites, std::uint32_t site, const std::vect
     values[j] = spacing[near[j].site];
   std::nth_element(values.begin(), values.begin() + (count - 1) / 2, values.begin() + count);
   return values[(count - 1) / 2];
-}
-
-float median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Whether two neighbours on one surface have contrary signs. Those of a thin wall's two sides, back to back or, across

@@ -1,4 +1,5 @@
 #include "host/cloud/strays.h"
+#include "host/cloud/quantile.h"
 #include "octree/parallel.h"
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,12 +19,6 @@ constexpr float alone = 4.0f;
 constexpr float sparse = 3.0f;       // of the cloud's median spacing
 constexpr double fills_space = 0.15; // least variance over the middle one; a sheet that is rough by its spacing: 0.1
 constexpr double no_line = 0.01;     // middle variance over the largest
-
-float median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool is_alone(float own, const Neighbour* near, unsigned count, const std::vector<float>& spacing) {
   std::array<float, neighbours> theirs;
