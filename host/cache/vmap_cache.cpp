@@ -14,7 +14,7 @@ namespace {
 
 constexpr char magic[8] = {'p', 'g', 'i', 'v', 'm', 'a', 'p', '\n'};
 /// To be raised with every change of the file, and of what make_links makes of one key.
-constexpr std::uint32_t version = 7;
+constexpr std::uint32_t version = 8;
 constexpr std::uint32_t byte_order = 0x01020304u; ///< as this machine writes it
 
 /// A link without the padding of the struct, whose bytes are anybody's.
@@ -103,14 +103,14 @@ std::string vmap_key(const ClusterTree& tree, View<Splat> splats, const LinkOpti
   char text[400];
   std::snprintf(text, sizeof text,
                 "vmap %u; %zu clusters %016llx; %zu points %016llx; %zu splats %016llx; samples %u epsilon %a "
-                "separation %a seed %u point samples %u thesis %d; ",
+                "separation %a seed %u point samples %u thesis %d rays %llu; ",
                 version, tree.nodes.size(),
                 static_cast<unsigned long long>(fnv1a(bytes_of(tree.nodes.data(), tree.nodes.size()))),
                 tree.points.size(),
                 static_cast<unsigned long long>(fnv1a(bytes_of(tree.points.data(), tree.points.size()))), splats.size,
                 static_cast<unsigned long long>(fnv1a(bytes_of(splats.data, splats.size))), options.samples,
                 static_cast<double>(options.epsilon), static_cast<double>(options.separation), options.seed,
-                options.point_samples, options.thesis ? 1 : 0);
+                options.point_samples, options.thesis ? 1 : 0, static_cast<unsigned long long>(options.most_rays));
   return text + answered_by;
 }
 

@@ -22,7 +22,10 @@ public:
     return solve_by_operator(exchange_.get(), {map_.tree.points, map_.place}, light, tolerance, report);
   }
   std::uint64_t rays() const override { return map_.vmap.statistics.rays; }
-  std::string summary() const override { return std::to_string(map_.vmap.links.size()) + " links"; }
+  std::string summary() const override {
+    return std::to_string(map_.vmap.links.size()) + " links" +
+           (map_.vmap.statistics.coarse_waves > 0 ? " (the last ones coarser: radiosity.vmap_rays was reached)" : "");
+  }
   std::vector<MethodStatistic> statistics() const override {
     const LinkStatistics& l = map_.vmap.statistics;
     return {{"radiosity", "order", order_},
@@ -34,6 +37,8 @@ public:
             {"vmap", "far", l.far},
             {"vmap", "mid", l.mid},
             {"vmap", "near", l.near_},
+            {"vmap", "waves", l.waves},
+            {"vmap", "coarse_waves", l.coarse_waves},
             {"vmap", "rays", l.rays}};
   }
 

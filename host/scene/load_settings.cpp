@@ -103,6 +103,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
     radiosity.vmap_samples = static_cast<int>(*samples);
   if (const auto samples = table->integer("point_samples", limits::point_samples))
     radiosity.point_samples = static_cast<int>(*samples);
+  if (const auto rays = table->integer("vmap_rays", limits::vmap_rays)) radiosity.vmap_rays = *rays;
   if (const auto epsilon = table->number("epsilon", limits::epsilon)) radiosity.epsilon = *epsilon;
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;

@@ -5,7 +5,7 @@ namespace pointgi {
 
 const std::vector<RadiosityWords>& radiosity_words() {
   static const std::vector<RadiosityWords> all{
-      {"fmm", {"order", "vmap_samples", "point_samples", "epsilon", "tolerance", "vmap"}},
+      {"fmm", {"order", "vmap_samples", "point_samples", "vmap_rays", "epsilon", "tolerance", "vmap"}},
       {"direct", {"tolerance"}},
   };
   return all;

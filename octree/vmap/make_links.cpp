@@ -75,16 +75,27 @@ public:
     if (tree_.nodes[0].count > 0) wave.push_back({});
     const std::size_t pairs_at_once = std::max<std::size_t>(grain, options_.batch / (4 * options_.samples));
     while (!wave.empty()) {
+      coarse_ = coarse_ || exceeds_most_rays(wave.size());
       ++map_.statistics.waves;
+      map_.statistics.coarse_waves += coarse_ ? 1 : 0;
+      const std::uint64_t rays = map_.statistics.rays;
       std::vector<Pair> next;
       for (std::size_t begin = 0; begin < wave.size(); begin += pairs_at_once)
         treat({wave.data() + begin, std::min(pairs_at_once, wave.size() - begin)}, next);
+      rays_a_pair_ = static_cast<double>(map_.statistics.rays - rays) / static_cast<double>(wave.size());
       wave = std::move(next);
     }
     return std::move(map_);
   }
 
 private:
+  /// Whether a wave of so many pairs would, if each asks as much as those of the wave before.
+  bool exceeds_most_rays(std::size_t pairs) const {
+    return options_.most_rays > 0 &&
+           static_cast<double>(map_.statistics.rays) + rays_a_pair_ * static_cast<double>(pairs) >
+               static_cast<double>(options_.most_rays);
+  }
+
   bool is_leaf(std::uint32_t n) const { return tree_.nodes[n].first_child == 0; }
 
   /// Classifies, asks, decides: one part of a wave.
@@ -146,7 +157,7 @@ private:
     q.all_facing = from_a == Facing::all && from_b == Facing::all;
     const bool separated = well_separated(a, b, options_.separation);
     const float exchange = exchange_bound(a, b);
-    q.small = separated && exchange < options_.epsilon;
+    q.small = separated && (coarse_ || exchange < options_.epsilon);
     if (pair.stage != Stage::leaves && separated && (q.all_facing || q.small))
       q.kind = Question::whole;
     else
@@ -158,7 +169,7 @@ private:
   /// Segments of a pair: the more light goes between the two, the more a hidden part that no segment meets would cost.
   std::uint32_t samples_for(const Pair& pair, bool point_wise, float exchange) const {
     if (point_wise) return 2 * options_.samples;
-    const float more = exchange > options_.epsilon ? std::min(exchange / options_.epsilon, most_more_samples) : 1.0f;
+    const float more = exchange > options_.epsilon && !coarse_ ? std::min(exchange / options_.epsilon, most_more_samples) : 1.0f;
     const auto count = static_cast<std::uint32_t>(static_cast<float>(options_.samples) * more);
     return pair.stage == Stage::all_blocked ? 4 * count : count;
   }
@@ -205,7 +216,7 @@ private:
   void decide_whole(const Pair& pair, const Question& q, std::uint32_t open, Output& out) const {
     const float visible = share(q, open);
     const bool retested = pair.stage == Stage::all_blocked;
-    if (q.small && (q.segments == 0 || (options_.thesis && visible == 0.0f))) return;
+    if (q.small && (q.segments == 0 || ((options_.thesis || coarse_) && visible == 0.0f))) return;
     if (visible == 0.0f && !options_.thesis) {
       // Behind a wall, or almost: what is dropped wrongly all points of the pair miss, and their cluster shows.
       if (!retested) out.next.push_back({pair.a, pair.b, Stage::all_blocked});
@@ -244,6 +255,8 @@ private:
   VisibilityOracle& oracle_;
   LinkOptions options_;
   PairSamples samples_;
+  bool coarse_ = false; ///< most_rays is reached: from now on no pair that is far apart is divided
+  double rays_a_pair_ = 0; ///< that the wave before asked
   VMap map_;
 };
 

@@ -26,6 +26,10 @@ struct LinkOptions {
   /// Each point asks one segment of each cluster that is partly hidden from it; where that is more than this, up to
   /// four neighbours share one (octree/vmap/point_shares.h). 0: one share for all points of a pair.
   unsigned point_samples = 128;
+  /// Rays after which pairs that are far apart are no longer divided, but taken with the share that `samples` segments
+  /// find: the time of foliage, where nearly all pairs hide each other in part, would grow as the square of its points.
+  /// Decided between waves, so that a wave may go beyond by what its pairs ask once; not of point_shares. 0: no bound.
+  std::uint64_t most_rays = 0;
   std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
 };
 
@@ -34,6 +38,7 @@ struct LinkStatistics {
   std::uint64_t far = 0, mid = 0, near_ = 0; ///< links
   std::uint64_t rays = 0;                    ///< segments asked for
   std::uint64_t waves = 0;                   ///< rounds of questions
+  std::uint64_t coarse_waves = 0;            ///< of these, after LinkOptions::most_rays
 };
 
 struct VMap {

@@ -94,6 +94,7 @@ TEST_CASE("whatever links depend on is part of the key") {
   CHECK(with([](LinkOptions& o) { o.separation = 0.5f; }));
   CHECK(with([](LinkOptions& o) { o.seed = 9; }));
   CHECK(with([](LinkOptions& o) { o.thesis = true; }));
+  CHECK(with([](LinkOptions& o) { o.most_rays = 1000; }));
   CHECK_FALSE(with([](LinkOptions& o) { o.batch = 77; }));
   CHECK(vmap_key(k.tree, k.splats, k.options, "another device") != k.key);
 }

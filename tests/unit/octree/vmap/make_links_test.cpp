@@ -177,9 +177,39 @@ TEST_CASE("shares follow what is blocked") {
   CHECK(wrong < 0.02 * certain);
 }
 
+TEST_CASE("after most_rays pairs far apart are taken as they are: fewer rays, and still all pairs under one link") {
+  // Every second pair is hidden, at random: divided as long as rays are left, as in foliage.
+  const ClusterTree tree = build_clusters(room_splats(4000), {});
+  const auto leaves = [](const Splat& a, const Splat& b) {
+    const float mixed = 1e4f * (a.position[0] * b.position[0] + a.position[1] * b.position[1]);
+    return mixed - std::floor(mixed) < 0.5f;
+  };
+  LinkOptions options;
+  Formal oracle(tree, leaves);
+  const VMap whole = make_links(tree, oracle, options);
+  CHECK(whole.statistics.coarse_waves == 0);
+  options.most_rays = whole.statistics.rays / 10;
+  const VMap map = make_links(tree, oracle, options);
+  CHECK(map.statistics.coarse_waves > 0);
+  CHECK(map.statistics.coarse_waves < map.statistics.waves);
+  CHECK(map.statistics.rays < whole.statistics.rays / 2);
+  const auto exchanged = [&](const VMap& of) {
+    double sum = 0.0;
+    for (const Link& l : of.links)
+      for (std::size_t i = tree.nodes[l.a].first_point; i < tree.nodes[l.a].first_point + tree.nodes[l.a].count; ++i)
+        for (std::size_t j = tree.nodes[l.b].first_point; j < tree.nodes[l.b].first_point + tree.nodes[l.b].count; ++j)
+          sum += face_each_other(tree.points[i], tree.points[j]) ? static_cast<double>(l.visible) : 0.0;
+    return sum;
+  };
+  CHECK(exchanged(map) == Approx(exchanged(whole)).epsilon(0.02)); // shares of 8 segments, over thousands of links
+  const Cover cover = cover_of(tree, map);
+  CHECK(*std::max_element(cover.links.begin(), cover.links.end()) == 1);
+}
+
 TEST_CASE("the links do not depend on threads or batches, but on the seed") {
   const ClusterTree tree = build_clusters(room_splats(3000), {});
   LinkOptions options;
+  options.most_rays = GENERATE(0u, 20000u); // decided between waves
   Formal oracle(tree, wall_with_gap);
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
