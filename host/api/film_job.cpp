@@ -58,8 +58,9 @@ std::string settings_text(const pointgi::Scene& scene, const std::string& integr
   const CausticSettings& c = scene.caustics;
   return fmt::format("{} {} {}; {} {} {} {} {} {:a} {:a} {} {} {}; {} {} {} {:a} {} {}", integrator, paths,
                      name_of(scene.camera.backfaces.value_or(Backfaces::shade)), r.method, r.order, r.vmap_samples,
-                     r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap, r.direct_light, r.light_samples.value_or(0),
-                     c.photons, c.gather_k, c.power, c.max_radius.value_or(0.0), c.feedback, c.indirect);
+                     r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap, r.direct_light,
+                     r.light_samples.value_or(0), c.photons, c.gather_k, c.power, c.max_radius.value_or(0.0),
+                     c.feedback, c.indirect);
 }
 
 /// What the picture depends on: splats, lights, camera and samples, as the device reads them, and `settings`.

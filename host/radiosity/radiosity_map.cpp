@@ -74,9 +74,8 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
-  options.most_rays =
-      settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays)
-                         : default_vmap_rays(map.place.size(), settings.epsilon);
+  options.most_rays = settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays)
+                                         : default_vmap_rays(map.place.size(), settings.epsilon);
   options.seed = scene.seed;
   options.thesis = settings.vmap == "thesis";
   const DeviceInfo& device = session.info();

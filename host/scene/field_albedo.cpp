@@ -13,6 +13,7 @@ namespace {
 constexpr double low_share = 0.01, high_share = 0.99; // a few extremes don't take the contrast from the others
 constexpr std::size_t most_samples = 1000000;
 constexpr double middle = 0.5;
+constexpr double least_range = 0.1; // of the quantiles' range
 
 using Fields = std::vector<const Field*>;
 
@@ -20,8 +21,8 @@ struct Range {
   double low, high;
 };
 
-/// The quantiles of the values that are finite, of every so many.
-Range quantiles(const Fields& fields) {
+/// Of the values that are finite, of every so many: the quantiles, and the value in the middle.
+Range quantiles(const Fields& fields, double* median = nullptr) {
   std::vector<double> values;
   for (const Field* field : fields) {
     const std::size_t step = field->values.size() * fields.size() / most_samples + 1;
@@ -34,6 +35,7 @@ Range quantiles(const Fields& fields) {
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
+  if (median != nullptr) *median = quantile(0.5);
   const double low = quantile(low_share);
   return {low, quantile(high_share)};
 }
@@ -94,7 +96,12 @@ void colours_from_fields(const MaterialSettings& material, const std::string& fi
 bool colours_from_intensity(PointCloud& cloud, CloudReport& report) {
   for (const char* name : intensity_names())
     if (const Field* field = find_field(cloud.fields, name)) {
-      const Range range = quantiles({field});
+      double median = 0.0;
+      Range range = quantiles({field}, &median);
+      if (!(range.high > range.low)) continue; // all alike: it tells nothing
+      // Lasers measure a few bright signs and much that is dark: half of the points are at least middle grey.
+      range.high = std::clamp(range.low + (median - range.low) / middle,
+                              range.low + least_range * (range.high - range.low), range.high);
       fill_colours({field}, range, cloud);
       report.notes.push_back("the file has no colours: they are grey by its field " + describe({field}, range) +
                              "; a material chooses by albedo = { field = \"" + printable(field->info.name) +

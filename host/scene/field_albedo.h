@@ -11,7 +11,8 @@ namespace pointgi {
 void colours_from_fields(const MaterialSettings& material, const std::string& file, PointCloud& cloud,
                          CloudReport& report);
 
-/// The same in grey from the intensity of a file that has no colours, if it has one. True if it has.
+/// The same in grey from the intensity of a file that has no colours, if it has one that is not the same everywhere;
+/// white is at most twice the median above black, so that no picture is nearly black. True if it has.
 bool colours_from_intensity(PointCloud& cloud, CloudReport& report);
 
 } // namespace pointgi

@@ -157,10 +157,10 @@ struct LightSettings {
 struct RadiositySettings {
   std::string method = "fmm"; ///< "none": direct light only
   int order = 3;
-  int vmap_samples = 8;    ///< segments a pair of clusters
-  int point_samples = 128; ///< LinkOptions::point_samples (octree/vmap/make_links.h)
+  int vmap_samples = 8;               ///< segments a pair of clusters
+  int point_samples = 128;            ///< LinkOptions::point_samples (octree/vmap/make_links.h)
   std::optional<long long> vmap_rays; ///< LinkOptions::most_rays; absent: default_vmap_rays (host/radiosity)
-  double epsilon = 5e-3;   ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
+  double epsilon = 5e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)

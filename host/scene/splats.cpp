@@ -87,7 +87,8 @@ void place(CloudReport& report, const CloudPose& pose) {
     if (report.placement) station = (*report.placement)(station);
     station = pose.to_scene(station);
   }
-  if (report.up) report.up = Vector3d(pose.rotation * *report.up);
+  for (auto* up : {&report.up, &report.usual_up})
+    if (*up) *up = Vector3d(pose.rotation * **up);
 }
 
 /// Where the material or the lack of colours asks for it.

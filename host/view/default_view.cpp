@@ -66,7 +66,10 @@ UpChoice up_for(const Scene& scene, const WorldSplats& splats, const ViewPoints&
   if (scene.up_chosen) return {up_of(scene), "as asked for"};
   for (const CloudReport& report : splats.reports)
     if (report.up) return {report.up->normalized(), "of the file or this kind of cloud"};
-  return find_up(points, kind, first_station(splats));
+  std::optional<Vector3d> usual;
+  for (const CloudReport& report : splats.reports)
+    if (report.usual_up && !usual) usual = report.usual_up;
+  return find_up(points, kind, first_station(splats), usual);
 }
 
 /// Area that faces down in the upper half, against what faces up in the lower.

@@ -79,6 +79,16 @@ double bottom_layer(const ViewPoints& points, const Vector3d& up) {
          static_cast<double>(points.size());
 }
 
+constexpr const char* usual_reason = "as files of this format count";
+
+bool stands_flat(const ViewPoints& points, const Vector3d& up) {
+  constexpr double broad = 0.2, flat = 0.05;
+  int axis = 0;
+  up.cwiseAbs().maxCoeff(&axis);
+  const Support support = support_of(points, axis, up[axis]);
+  return support.footprint > broad && support.flat > flat;
+}
+
 UpChoice of_sparse(const ViewPoints& points) {
   // Programs of structure from motion count y downwards as their cameras do; those that level their points, z upwards.
   constexpr double clearly = 1.3;
@@ -94,7 +104,7 @@ UpChoice of_sparse(const ViewPoints& points) {
 
 } // namespace
 
-UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye) {
+UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye, const std::optional<Vector3d>& usual) {
   switch (kind) {
   case CloudKind::station:
   case CloudKind::map:
@@ -106,12 +116,13 @@ UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye) 
   case CloudKind::depth_frame:
     return of_depth_frame(points, eye);
   case CloudKind::sparse:
-    return of_sparse(points);
+    return usual ? UpChoice{*usual, usual_reason} : of_sparse(points);
   case CloudKind::model:
   case CloudKind::foliage:
-    return standing_up(points);
+    break;
   }
-  return standing_up(points);
+  const UpChoice standing = standing_up(points);
+  return usual && !stands_flat(points, standing.up) ? UpChoice{*usual, usual_reason} : standing;
 }
 
 } // namespace pointgi

@@ -13,7 +13,9 @@ struct UpChoice {
 /// gravity pulls. Terrain: its thin axis, on the side that it faces. Rooms: whichever of z and y more surface is
 /// across. Depth frames: whichever way more of the surface faces, floors and tables. Sparse points: whichever way more
 /// of them lie in a level layer at the bottom. Models: what they stand on, else the axis that they are symmetric about,
-/// else y.
-UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye);
+/// else y. `usual`: what the file's format is used to, CloudReport::usual_up: models, foliage and sparse points have
+/// it, unless they stand on a broad flat foot.
+UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye,
+                 const std::optional<Vector3d>& usual = {});
 
 } // namespace pointgi

@@ -169,7 +169,8 @@ private:
   /// Segments of a pair: the more light goes between the two, the more a hidden part that no segment meets would cost.
   std::uint32_t samples_for(const Pair& pair, bool point_wise, float exchange) const {
     if (point_wise) return 2 * options_.samples;
-    const float more = exchange > options_.epsilon && !coarse_ ? std::min(exchange / options_.epsilon, most_more_samples) : 1.0f;
+    const float more =
+        exchange > options_.epsilon && !coarse_ ? std::min(exchange / options_.epsilon, most_more_samples) : 1.0f;
     const auto count = static_cast<std::uint32_t>(static_cast<float>(options_.samples) * more);
     return pair.stage == Stage::all_blocked ? 4 * count : count;
   }
@@ -255,7 +256,7 @@ private:
   VisibilityOracle& oracle_;
   LinkOptions options_;
   PairSamples samples_;
-  bool coarse_ = false; ///< most_rays is reached: from now on no pair that is far apart is divided
+  bool coarse_ = false;    ///< most_rays is reached: from now on no pair that is far apart is divided
   double rays_a_pair_ = 0; ///< that the wave before asked
   VMap map_;
 };

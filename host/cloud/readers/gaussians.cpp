@@ -81,6 +81,7 @@ void discs_from_gaussians(const GaussianValues& gaussians, PointCloud& cloud, Cl
   const auto faint =
       std::count_if(cloud.opacity.begin(), cloud.opacity.end(), [](float opacity) { return opacity < least_opacity; });
   const auto round = std::count_if(cloud.normal.begin(), cloud.normal.end(), missing);
+  if (!report.usual_up) report.usual_up = -Eigen::Vector3d::UnitY(); // as the cameras count that they were trained with
   report.notes.push_back("the file holds " + std::to_string(n) + " Gaussians, which are shown as discs; " +
                          std::to_string(faint) + " are nearly transparent (opacity below 0.1) and are left out, " +
                          std::to_string(round) + " are not flat and have no normal of their own.");

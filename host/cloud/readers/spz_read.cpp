@@ -128,6 +128,7 @@ GaussianRow row_at(const unsigned char* data, std::size_t i, const SpzHeader& he
 } // namespace
 
 PointCloud read_spz(const std::string& path, const ReadRequest& request, CloudReport& report) {
+  report.usual_up = Eigen::Vector3d::UnitY(); // right, up, back: what the format's own programs turn scenes into
   const FileBytes bytes = read_whole_file(path);
   std::array<unsigned char, header_bytes> head;
   if (bytes.size >= head.size()) { // version 4 begins with its header, packed after it

@@ -104,7 +104,7 @@ TEST_CASE("a kept V-map that is cut short or damaged anywhere is not used, and m
   const Kept& k = kept();
   store_vmap(k.key, k.map);
   const std::string path = vmap_file(k.key), whole = contents(path);
-  REQUIRE(whole.size() == 104 + k.key.size() + 20 * k.map.links.size() + k.map.point_shares.size());
+  REQUIRE(whole.size() == 112 + k.key.size() + 20 * k.map.links.size() + k.map.point_shares.size());
   std::size_t trusted = 0, silent = 0;
   const auto look = [&](const std::string& bytes) {
     put(path, bytes);

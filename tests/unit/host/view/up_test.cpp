@@ -52,6 +52,17 @@ TEST_CASE("what stands on a slab in a file with y downwards is turned round") {
   CHECK((up_of_model(upside_down(statue())) + Vector3d::UnitY()).norm() == 0.0);
 }
 
+TEST_CASE("files of Gaussians have y downwards, unless what they show stands on a broad flat foot") {
+  const std::optional<Vector3d> usual = Vector3d(-Vector3d::UnitY());
+  const auto up_of = [&](const PointCloud& cloud, CloudKind kind) {
+    return find_up(view_points(cloud, 0.005), kind, Vector3d::Zero(), usual).up;
+  };
+  CHECK(up_of(tree(), CloudKind::foliage).y() == -1.0);
+  CHECK(up_of(vase(), CloudKind::sparse).y() == -1.0);
+  CHECK(up_of(vase(), CloudKind::model).y() == 1.0);
+  CHECK(up_of(z_up(vase()), CloudKind::model).z() == 1.0);
+}
+
 TEST_CASE("a room is level across its floor") {
   PointCloud room = box({0, 0, 0}, {3, 1, 2.5}, true);
   CHECK(find_up(view_points(room, 0.005), CloudKind::room, Vector3d::Zero()).up.y() == 1.0);
