@@ -180,17 +180,17 @@ int side_of(const TreeShape& shape, double eyes, double space, double up, bool i
   return std::abs(vote) > clear_vote ? (vote < 0 ? -1 : 1) : 0;
 }
 
-/// What single places see: 1 only their front faces open space, -1 only their back does, 0 anything else.
+/// What single places see: 1 mostly their front faces open space, -1 mostly their back does, 0 anything else.
 std::vector<int> votes_of_places(const Sites& sites, const FreeSpace& space, std::uint32_t step,
                                  const std::vector<Eigen::Vector3f>& normals) {
-  constexpr double shut = 0.05, open = 0.3;
+  constexpr double shut = 0.3, open = 0.4; // shut: of the other side's openness, for a jar's inside sees its mouth
   std::vector<int> votes((sites.size() + step - 1) / step);
   parallel_ranges(votes.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto s = static_cast<std::uint32_t>(v * step);
       const Eigen::Vector3d n = normals[s].cast<double>();
       const double front = space.openness(sites.position(s), n), back = space.openness(sites.position(s), -n);
-      votes[v] = front > open && back < shut ? 1 : back > open && front < shut ? -1 : 0;
+      votes[v] = front > open && back < shut * front ? 1 : back > open && front < shut * back ? -1 : 0;
     }
   });
   return votes;
