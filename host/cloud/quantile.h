@@ -14,71 +14,117 @@ namespace detail {
 constexpr std::size_t quantile_samples = 1 << 14;
 constexpr double quantile_margin = 5.0; // standard deviations of the sample's rank
 
-/// Two values of a regular sample that very likely enclose the one of the rank: then few values lie between them.
-template <class Value>
-std::array<double, 2> quantile_bracket(std::size_t n, std::size_t rank, const Value& value) {
+/// Values between two that very likely enclose the one of a rank, and how many are below.
+struct Enclosed {
+  double low, high;
+  std::size_t below = 0;
+  std::vector<double> values;
+
+  void add(double v) {
+    below += v < low ? 1u : 0u;
+    if (v >= low && v <= high) values.push_back(v);
+  }
+};
+
+/// The ends of the brackets, from a regular sample: then few values lie in each.
+template <std::size_t Ranks, class Value>
+std::array<Enclosed, Ranks> quantile_brackets(std::size_t n, const std::array<std::size_t, Ranks>& ranks,
+                                              const Value& value) {
   std::vector<double> sample(quantile_samples);
   for (std::size_t s = 0; s < quantile_samples; ++s)
-    sample[s] = value(s * n / quantile_samples);
+    sample[s] = static_cast<double>(value(s * n / quantile_samples));
   std::sort(sample.begin(), sample.end());
   constexpr auto m = static_cast<double>(quantile_samples);
-  const double share = static_cast<double>(rank) / static_cast<double>(n);
-  const double reach = quantile_margin * std::sqrt(m * share * (1.0 - share)) + 8.0;
   const auto at = [&](double place) { return sample[static_cast<std::size_t>(std::clamp(place, 0.0, m - 1.0))]; };
-  return {at(m * share - reach), at(m * share + reach)};
+  std::array<Enclosed, Ranks> brackets;
+  for (std::size_t r = 0; r < Ranks; ++r) {
+    const double share = static_cast<double>(ranks[r]) / static_cast<double>(n);
+    const double reach = quantile_margin * std::sqrt(m * share * (1.0 - share)) + 8.0;
+    brackets[r].low = at(m * share - reach);
+    brackets[r].high = at(m * share + reach);
+  }
+  return brackets;
 }
 
-/// The values inside the bracket, and how many are below it.
-template <class Value>
-std::size_t enclosed_values(std::size_t n, const std::array<double, 2>& bracket, const Value& value,
-                            std::vector<double>& enclosed) {
+/// Fills the brackets.
+template <std::size_t Ranks, class Value>
+void enclose_values(std::size_t n, std::array<Enclosed, Ranks>& brackets, const Value& value) {
   const std::size_t grain = std::max<std::size_t>(quantile_samples, (n + 31) / 32);
-  struct Range {
-    std::size_t below = 0;
-    std::vector<double> enclosed;
-  };
-  std::vector<Range> ranges((n + grain - 1) / grain);
+  std::vector<std::array<Enclosed, Ranks>> ranges((n + grain - 1) / grain, brackets);
   parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    Range& range = ranges[begin / grain];
+    std::array<Enclosed, Ranks>& range = ranges[begin / grain];
     for (std::size_t i = begin; i < end; ++i) {
-      const double v = value(i);
-      range.below += v < bracket[0] ? 1u : 0u;
-      if (v >= bracket[0] && v <= bracket[1]) range.enclosed.push_back(v);
+      const auto v = static_cast<double>(value(i));
+      for (Enclosed& bracket : range)
+        bracket.add(v);
     }
   });
-  std::size_t below = 0;
-  for (const Range& range : ranges) {
-    below += range.below;
-    enclosed.insert(enclosed.end(), range.enclosed.begin(), range.enclosed.end());
-  }
-  return below;
+  for (const auto& range : ranges)
+    for (std::size_t r = 0; r < Ranks; ++r) {
+      brackets[r].below += range[r].below;
+      brackets[r].values.insert(brackets[r].values.end(), range[r].values.begin(), range[r].values.end());
+    }
 }
 
-} // namespace detail
-
-/// The value that would stand at place `rank` (below n) if value(0) … value(n - 1) were sorted; none may be NaN. Works
-/// on all cores; `value` is called more than once for an index.
-template <class Value>
-double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
-  std::vector<double> values;
-  if (n > 4 * detail::quantile_samples) {
-    const std::size_t below = detail::enclosed_values(n, detail::quantile_bracket(n, rank, value), value, values);
-    if (rank >= below && rank - below < values.size()) {
-      const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank - below);
-      std::nth_element(values.begin(), at, values.end());
-      return *at;
-    }
-  }
-  values.resize(n); // few, or the sample led astray
-  for (std::size_t i = 0; i < n; ++i)
-    values[i] = value(i);
+inline double nth_value(std::vector<double>& values, std::size_t rank) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-/// The middle value, the upper one of two. At least one value.
-inline float median(std::vector<float> values) {
+} // namespace detail
+
+/// The values that would stand at the places `ranks` (each below n) if value(0) … value(n - 1) were sorted; none may be
+/// NaN. Works on all cores; `value` is called more than once for an index.
+template <std::size_t Ranks, class Value>
+std::array<double, Ranks> values_at_ranks(std::size_t n, const std::array<std::size_t, Ranks>& ranks,
+                                          const Value& value) {
+  std::array<double, Ranks> found{};
+  std::array<bool, Ranks> done{};
+  if (n > 4 * detail::quantile_samples) {
+    auto brackets = detail::quantile_brackets(n, ranks, value);
+    detail::enclose_values(n, brackets, value);
+    for (std::size_t r = 0; r < Ranks; ++r) {
+      detail::Enclosed& b = brackets[r];
+      done[r] = ranks[r] >= b.below && ranks[r] - b.below < b.values.size();
+      if (done[r]) found[r] = detail::nth_value(b.values, ranks[r] - b.below);
+    }
+  }
+  std::vector<double> all;
+  for (std::size_t r = 0; r < Ranks; ++r) {
+    if (done[r]) continue;
+    all.resize(n); // few, or the sample led astray
+    for (std::size_t i = 0; i < n; ++i)
+      all[i] = static_cast<double>(value(i));
+    found[r] = detail::nth_value(all, ranks[r]);
+  }
+  return found;
+}
+
+/// One of them.
+template <class Value>
+double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
+  return values_at_ranks(n, std::array<std::size_t, 1>{rank}, value)[0];
+}
+
+/// What these shares, 0 .. 1, of the values are below; n > 0.
+template <std::size_t Shares, class Value>
+std::array<double, Shares> quantiles(std::size_t n, const std::array<double, Shares>& shares, const Value& value) {
+  std::array<std::size_t, Shares> ranks{};
+  for (std::size_t s = 0; s < Shares; ++s)
+    ranks[s] = static_cast<std::size_t>(shares[s] * static_cast<double>(n - 1));
+  return values_at_ranks(n, ranks, value);
+}
+
+/// The middle value, the upper one of two, of many; n > 0.
+template <class Value>
+double median(std::size_t n, const Value& value) {
+  return value_at_rank(n, n / 2, value);
+}
+
+/// The middle value, the upper one of two, of a few. At least one value.
+template <class T>
+T median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

@@ -49,12 +49,12 @@ bool lies_in_a_crowd(const Sites& sites, std::uint32_t site, const Neighbour* ne
 std::vector<char> find_strays(const Sites& sites, const std::vector<float>& spacing) {
   std::vector<char> stray(sites.size(), 0);
   if (sites.size() < least_sites) return stray;
-  const float usual = median(spacing);
+  const auto usual = static_cast<float>(median(spacing.size(), [&](std::size_t s) { return spacing[s]; }));
   parallel_ranges(sites.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, neighbours> near;
     // Of the sites around along the curve: most sites are no sparser than these, and need no search.
-    const float around = median(
-        {spacing.begin() + static_cast<std::ptrdiff_t>(begin), spacing.begin() + static_cast<std::ptrdiff_t>(end)});
+    const float around = median(std::vector<float>(spacing.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                   spacing.begin() + static_cast<std::ptrdiff_t>(end)));
     for (std::size_t s = begin; s < end; ++s) {
       if (spacing[s] <= 1.5f * std::min(around, usual)) continue;
       const auto site = static_cast<std::uint32_t>(s);
