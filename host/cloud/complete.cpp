@@ -127,8 +127,7 @@ void complete_around_strays(PointCloud& cloud, const std::vector<char>& strays, 
   body.station = without(cloud.station, strays);
   body.stations = cloud.stations;
   Sites sites(body.position);
-  sites.keep_neighbours(kept_neighbours);
-  complete_body(body, sites, spacings_of(sites), options, report);
+  complete_body(body, sites, keep_neighbours_and_spacings(sites, kept_neighbours), options, report);
   cloud.normal.resize(cloud.size());
   cloud.radius.resize(cloud.size());
   cloud.area.resize(cloud.size());
@@ -189,8 +188,7 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
   }
 
   auto sites = std::make_unique<Sites>(cloud.position);
-  sites->keep_neighbours(kept_neighbours);
-  std::vector<float> spacing = spacings_of(*sites);
+  std::vector<float> spacing = keep_neighbours_and_spacings(*sites, kept_neighbours);
   const std::vector<char> strays = strays_of(cloud, *sites, spacing, options);
   if (strays.empty()) {
     complete_body(cloud, *sites, std::move(spacing), options, report);
@@ -210,8 +208,7 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
   report.points_dropped += count;
   keep_points(cloud, [&](std::size_t i) { return !strays[i]; });
   sites = std::make_unique<Sites>(cloud.position);
-  sites->keep_neighbours(kept_neighbours);
-  complete_body(cloud, *sites, spacings_of(*sites), options, report);
+  complete_body(cloud, *sites, keep_neighbours_and_spacings(*sites, kept_neighbours), options, report);
 }
 
 } // namespace pointgi

@@ -46,16 +46,12 @@ std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& optio
 
 std::size_t drop_outliers(PointCloud& cloud) {
   if (cloud.size() < least_points) return 0;
-  std::array<Eigen::Vector3d, 2> bounds; // without the outermost hundredth of the points on each side of each axis
-  const std::size_t cut = cloud.size() / 100;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto found = values_at_ranks(cloud.size(), std::array<std::size_t, 2>{cut, cloud.size() - 1 - cut},
-                                       [&](std::size_t i) { return cloud.position[i][axis]; });
-    bounds[0][axis] = found[0];
-    bounds[1][axis] = found[1];
-  }
-  const Eigen::Vector3d middle = 0.5 * (bounds[0] + bounds[1]);
-  const double far = outlier_distance * (bounds[1] - bounds[0]).maxCoeff();
+  const std::size_t cut = cloud.size() / 100; // the outermost points on each side of each axis do not count
+  const auto bounds = bounds_at_ranks(cloud.size(), cut, cloud.size() - 1 - cut,
+                                      [&](std::size_t i) -> const Eigen::Vector3d& { return cloud.position[i]; });
+  const Eigen::Vector3d low = Eigen::Vector3d::Map(bounds[0].data()), high = Eigen::Vector3d::Map(bounds[1].data());
+  const Eigen::Vector3d middle = 0.5 * (low + high);
+  const double far = outlier_distance * (high - low).maxCoeff();
   if (!(far > 0.0)) return 0;
   const auto near = [&](std::size_t i) { return (cloud.position[i] - middle).cwiseAbs().maxCoeff() <= far; };
   const std::size_t outliers = count_unwanted(cloud.size(), near);

@@ -18,16 +18,14 @@ constexpr double skipped_cells = 2.0;
 } // namespace
 
 FreeSpace::FreeSpace(const Sites& sites, const std::vector<float>& spacing, unsigned side) {
-  Eigen::Vector3d high;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto bounds = quantiles(sites.size(), std::array<double, 2>{outermost, 1.0 - outermost}, [&](std::size_t s) {
-      return static_cast<float>(sites.position(static_cast<std::uint32_t>(s))[axis]);
-    });
-    low_[axis] = bounds[0];
-    high[axis] = bounds[1];
-  }
-  const double usual =
-      quantiles(spacing.size(), std::array<double, 1>{0.5}, [&](std::size_t s) { return spacing[s]; })[0];
+  const std::size_t n = sites.size();
+  const auto bounds =
+      bounds_at_ranks(n, rank_of_share(n, outermost), rank_of_share(n, 1.0 - outermost), [&](std::size_t s) {
+        return Eigen::Vector3f(sites.position(static_cast<std::uint32_t>(s)).cast<float>());
+      });
+  low_ = Eigen::Vector3d::Map(bounds[0].data());
+  Eigen::Vector3d high = Eigen::Vector3d::Map(bounds[1].data());
+  const double usual = value_at_rank(n, rank_of_share(n, 0.5), [&](std::size_t s) { return spacing[s]; });
   const double extent = (high - low_).maxCoeff();
   cell_ = std::max({extent / side, 2.0 * usual, 1e-12});
   low_ -= Eigen::Vector3d::Constant(cell_);

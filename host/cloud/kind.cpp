@@ -36,28 +36,17 @@ struct Extent {
 
 constexpr std::size_t grain = 1 << 16; // sites of a range
 
-/// Along one axis, without the outermost hundredth on each side.
-template <class Coordinate>
-void find_bounds(std::size_t count, int axis, Extent& extent, const Coordinate& coordinate) {
-  const std::size_t cut = count / 100;
-  const auto found = values_at_ranks(count, std::array<std::size_t, 2>{cut, count - 1 - cut}, coordinate);
-  extent.low[axis] = found[0];
-  extent.high[axis] = found[1];
-}
-
-/// Of the sites on surfaces, or of all where these are few.
+/// Of the sites on surfaces, or of all where these are few, without the outermost hundredth on each side.
 Extent extent_of(const Sites& sites, const std::vector<Structure>& structure) {
   std::vector<std::uint32_t> on_surface;
   for (std::uint32_t s = 0; s < structure.size(); ++s)
     if (structure[s] == Structure::surface) on_surface.push_back(s);
-  Extent extent;
-  for (int axis = 0; axis < 3; ++axis)
-    if (structure.empty() || 4 * on_surface.size() < sites.size())
-      find_bounds(sites.size(), axis, extent,
-                  [&](std::size_t s) { return sites.position(static_cast<std::uint32_t>(s))[axis]; });
-    else
-      find_bounds(on_surface.size(), axis, extent, [&](std::size_t i) { return sites.position(on_surface[i])[axis]; });
-  return extent;
+  const bool all = structure.empty() || 4 * on_surface.size() < sites.size();
+  const std::size_t count = all ? sites.size() : on_surface.size(), cut = count / 100;
+  const auto bounds = bounds_at_ranks(count, cut, count - 1 - cut, [&](std::size_t i) {
+    return sites.position(all ? static_cast<std::uint32_t>(i) : on_surface[i]);
+  });
+  return {Eigen::Vector3d::Map(bounds[0].data()), Eigen::Vector3d::Map(bounds[1].data())};
 }
 
 /// How much normals face along an axis: the means of |n.axis| and of n.axis.
@@ -190,8 +179,9 @@ bool points_inwards(const Sites& sites, const std::vector<Eigen::Vector3f>& norm
 
 /// The spacing that nine tenths of the sites stay below, over that of one tenth.
 double unevenness(const std::vector<float>& spacing) {
-  const auto found =
-      quantiles(spacing.size(), std::array<double, 2>{0.1, 0.9}, [&](std::size_t s) { return spacing[s]; });
+  const std::size_t n = spacing.size();
+  const auto found = values_at_ranks(n, std::array<std::size_t, 2>{rank_of_share(n, 0.1), rank_of_share(n, 0.9)},
+                                     [&](std::size_t s, std::size_t) { return spacing[s]; });
   return found[1] / found[0];
 }
 

@@ -30,16 +30,19 @@ struct Enclosed {
 template <std::size_t Ranks, class Value>
 std::array<Enclosed, Ranks> quantile_brackets(std::size_t n, const std::array<std::size_t, Ranks>& ranks,
                                               const Value& value) {
-  std::vector<double> sample(quantile_samples);
-  for (std::size_t s = 0; s < quantile_samples; ++s)
-    sample[s] = static_cast<double>(value(s * n / quantile_samples));
-  std::sort(sample.begin(), sample.end());
   constexpr auto m = static_cast<double>(quantile_samples);
-  const auto at = [&](double place) { return sample[static_cast<std::size_t>(std::clamp(place, 0.0, m - 1.0))]; };
+  std::vector<double> sample(quantile_samples);
   std::array<Enclosed, Ranks> brackets;
   for (std::size_t r = 0; r < Ranks; ++r) {
+    for (std::size_t s = 0; s < quantile_samples; ++s)
+      sample[s] = static_cast<double>(value(s * n / quantile_samples, r));
     const double share = static_cast<double>(ranks[r]) / static_cast<double>(n);
     const double reach = quantile_margin * std::sqrt(m * share * (1.0 - share)) + 8.0;
+    const auto at = [&](double place) {
+      const auto found = sample.begin() + static_cast<std::ptrdiff_t>(std::clamp(place, 0.0, m - 1.0));
+      std::nth_element(sample.begin(), found, sample.end());
+      return *found;
+    };
     brackets[r].low = at(m * share - reach);
     brackets[r].high = at(m * share + reach);
   }
@@ -53,11 +56,9 @@ void enclose_values(std::size_t n, std::array<Enclosed, Ranks>& brackets, const 
   std::vector<std::array<Enclosed, Ranks>> ranges((n + grain - 1) / grain, brackets);
   parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
     std::array<Enclosed, Ranks>& range = ranges[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto v = static_cast<double>(value(i));
-      for (Enclosed& bracket : range)
-        bracket.add(v);
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t r = 0; r < Ranks; ++r)
+        range[r].add(static_cast<double>(value(i, r)));
   });
   for (const auto& range : ranges)
     for (std::size_t r = 0; r < Ranks; ++r) {
@@ -74,8 +75,8 @@ inline double nth_value(std::vector<double>& values, std::size_t rank) {
 
 } // namespace detail
 
-/// The values that would stand at the places `ranks` (each below n) if value(0) … value(n - 1) were sorted; none may be
-/// NaN. Works on all cores; `value` is called more than once for an index.
+/// For each r the value that would stand at place ranks[r] (below n) if value(0, r) … value(n - 1, r) were sorted; none
+/// may be NaN. Works on all cores; `value` is called more than once for an index.
 template <std::size_t Ranks, class Value>
 std::array<double, Ranks> values_at_ranks(std::size_t n, const std::array<std::size_t, Ranks>& ranks,
                                           const Value& value) {
@@ -95,25 +96,31 @@ std::array<double, Ranks> values_at_ranks(std::size_t n, const std::array<std::s
     if (done[r]) continue;
     all.resize(n); // few, or the sample led astray
     for (std::size_t i = 0; i < n; ++i)
-      all[i] = static_cast<double>(value(i));
+      all[i] = static_cast<double>(value(i, r));
     found[r] = detail::nth_value(all, ranks[r]);
   }
   return found;
 }
 
-/// One of them.
+/// The same of value(0) … value(n - 1).
 template <class Value>
 double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
-  return values_at_ranks(n, std::array<std::size_t, 1>{rank}, value)[0];
+  return values_at_ranks(n, std::array<std::size_t, 1>{rank}, [&](std::size_t i, std::size_t) { return value(i); })[0];
 }
 
-/// What these shares, 0 .. 1, of the values are below; n > 0.
-template <std::size_t Shares, class Value>
-std::array<double, Shares> quantiles(std::size_t n, const std::array<double, Shares>& shares, const Value& value) {
-  std::array<std::size_t, Shares> ranks{};
-  for (std::size_t s = 0; s < Shares; ++s)
-    ranks[s] = static_cast<std::size_t>(shares[s] * static_cast<double>(n - 1));
-  return values_at_ranks(n, ranks, value);
+/// Of each axis the values at two ranks, `low` and `high`; position(i)[axis] for i below n.
+template <class Position>
+std::array<std::array<double, 3>, 2> bounds_at_ranks(std::size_t n, std::size_t low, std::size_t high,
+                                                     const Position& position) {
+  const auto found =
+      values_at_ranks(n, std::array<std::size_t, 6>{low, low, low, high, high, high},
+                      [&](std::size_t i, std::size_t r) { return position(i)[static_cast<std::ptrdiff_t>(r % 3)]; });
+  return {{{found[0], found[1], found[2]}, {found[3], found[4], found[5]}}};
+}
+
+/// The place of what a share, 0 .. 1, of n > 0 values is below.
+inline std::size_t rank_of_share(std::size_t n, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(n - 1));
 }
 
 /// The middle value, the upper one of two, of many; n > 0.

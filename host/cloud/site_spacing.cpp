@@ -14,6 +14,12 @@ constexpr double isolated_factor = 8.0; // spacing over that of the neighbours; 
 constexpr unsigned isolated_neighbours = 12;
 constexpr std::size_t most_looked_at = 1'000'000; // sites; a share of their neighbours is then right to 0.0003
 
+const auto lone_spacing = static_cast<float>(std::sqrt(2.0) / splat_overlap); // a square for a disc of radius 1
+
+float positive_spacing_of(const Neighbour* near, unsigned count) {
+  return std::max(spacing_of(near, count), 1e-18f);
+}
+
 /// Median of the neighbours' own spacings (the lower one).
 float neighbours_spacing(const Sites& sites, std::uint32_t site, const std::vector<float>& spacing) {
   std::array<Neighbour, isolated_neighbours> near;
@@ -66,16 +72,22 @@ float spacing_of(const Neighbour* near, unsigned count) {
 }
 
 std::vector<float> spacings_of(const Sites& sites) {
-  std::vector<float> spacing(sites.size(),
-                             static_cast<float>(std::sqrt(2.0) / splat_overlap)); // a square for a disc of radius 1
+  std::vector<float> spacing(sites.size(), lone_spacing);
   if (sites.size() == 1) return spacing;
   parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, spacing_neighbours> near;
     for (std::size_t s = begin; s < end; ++s) {
       const unsigned count = sites.nearest(static_cast<std::uint32_t>(s), spacing_neighbours, near.data());
-      spacing[s] = std::max(spacing_of(near.data(), count), 1e-18f);
+      spacing[s] = positive_spacing_of(near.data(), count);
     }
   });
+  return spacing;
+}
+
+std::vector<float> keep_neighbours_and_spacings(Sites& sites, unsigned k) {
+  std::vector<float> spacing(sites.size());
+  const auto see = [&](std::uint32_t site, const Neighbour* near) { spacing[site] = positive_spacing_of(near, k); };
+  if (!sites.keep_neighbours(k, see)) spacing = spacings_of(sites);
   return spacing;
 }
 

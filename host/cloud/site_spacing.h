@@ -20,6 +20,9 @@ float spacing_of(const Neighbour* near, unsigned count);
 /// splats' radius 1.
 std::vector<float> spacings_of(const Sites& sites);
 
+/// The same, and sites.keep_neighbours(k) in one go; k >= spacing_neighbours.
+std::vector<float> keep_neighbours_and_spacings(Sites& sites, unsigned k);
+
 /// Sites far out of proportion with their neighbours (isolated ones) get those neighbours' spacing.
 void rein_in_isolated(const Sites& sites, std::vector<float>& spacing);
 
