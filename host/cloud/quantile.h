@@ -112,9 +112,8 @@ double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
 template <class Position>
 std::array<std::array<double, 3>, 2> bounds_at_ranks(std::size_t n, std::size_t low, std::size_t high,
                                                      const Position& position) {
-  const auto found =
-      values_at_ranks(n, std::array<std::size_t, 6>{low, low, low, high, high, high},
-                      [&](std::size_t i, std::size_t r) { return position(i)[static_cast<std::ptrdiff_t>(r % 3)]; });
+  const auto found = values_at_ranks(n, std::array<std::size_t, 6>{low, low, low, high, high, high},
+                                     [&](std::size_t i, std::size_t r) { return position(i)[r % 3]; });
   return {{{found[0], found[1], found[2]}, {found[3], found[4], found[5]}}};
 }
 
