@@ -1,6 +1,7 @@
 #pragma once
 /// A loop over all cores whose result does not depend on how many there are: the body writes only to its own range.
 #include <cstddef>
+#include <vector>
 
 namespace pointgi {
 
@@ -25,6 +26,22 @@ void parallel_ranges(std::size_t n, std::size_t grain, const Body& body) {
   detail::run_ranges((n + grain - 1) / grain,
                      [](const void* f, std::size_t range) { (*static_cast<decltype(&call_range)>(f))(range); },
                      &call_range);
+}
+
+/// The sum of add(sum, begin, end) over ranges as above, each begun with `zero`: those of the ranges are added (+=) in
+/// their order, so that no rounding depends on how many cores there are.
+template <class Sum, class Add>
+Sum parallel_sum(std::size_t n, std::size_t grain, const Sum& zero, const Add& add) {
+  std::vector<Sum> sums((n + grain - 1) / grain, zero);
+  parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    Sum sum = zero;
+    add(sum, begin, end);
+    sums[begin / grain] = sum;
+  });
+  Sum total = zero;
+  for (const Sum& sum : sums)
+    total += sum;
+  return total;
 }
 
 } // namespace pointgi

@@ -1,6 +1,7 @@
 #include "host/cloud/drop_points.h"
 #include "host/cloud/keep_points.h"
 #include "host/cloud/quantile.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +20,14 @@ bool positive(float value) {
   return std::isnormal(value) && value > 0;
 }
 
+template <class Wanted>
+std::size_t count_unwanted(std::size_t n, const Wanted& wanted) {
+  return parallel_sum(n, 1 << 16, std::size_t{0}, [&](std::size_t& count, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      count += wanted(i) ? 0u : 1u;
+  });
+}
+
 } // namespace
 
 std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& options) {
@@ -30,26 +39,23 @@ std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& optio
     if (!cloud.opacity.empty() && !(cloud.opacity[i] >= least_opacity)) return false;
     return !use_radius || positive(cloud.radius[i]);
   };
-
+  // Faces may name points that there are not; without faces nothing is to be done for most clouds.
+  if (cloud.triangle.empty() && count_unwanted(cloud.size(), usable) == 0) return 0;
   return keep_points(cloud, usable);
 }
 
 std::size_t drop_outliers(PointCloud& cloud) {
   if (cloud.size() < least_points) return 0;
-  std::array<Eigen::Vector3d, 2> bounds; // without the outermost hundredth of the points on each side of each axis
-  const std::size_t cut = cloud.size() / 100;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto value = [&](std::size_t i) { return cloud.position[i][axis]; };
-    bounds[0][axis] = value_at_rank(cloud.size(), cut, value);
-    bounds[1][axis] = value_at_rank(cloud.size(), cloud.size() - 1 - cut, value);
-  }
-  const Eigen::Vector3d middle = 0.5 * (bounds[0] + bounds[1]);
-  const double far = outlier_distance * (bounds[1] - bounds[0]).maxCoeff();
+  const std::size_t cut = cloud.size() / 100; // the outermost points on each side of each axis do not count
+  const auto bounds = bounds_at_ranks(cloud.size(), cut, cloud.size() - 1 - cut,
+                                      [&](std::size_t i) -> const Eigen::Vector3d& { return cloud.position[i]; });
+  const Eigen::Vector3d low = Eigen::Vector3d::Map(bounds[0].data()), high = Eigen::Vector3d::Map(bounds[1].data());
+  const Eigen::Vector3d middle = 0.5 * (low + high);
+  const double far = outlier_distance * (high - low).maxCoeff();
   if (!(far > 0.0)) return 0;
   const auto near = [&](std::size_t i) { return (cloud.position[i] - middle).cwiseAbs().maxCoeff() <= far; };
-  std::size_t outliers = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    outliers += near(i) ? 0u : 1u;
+  const std::size_t outliers = count_unwanted(cloud.size(), near);
+  if (outliers == 0) return 0;
   // More than a few are a second object, however far off.
   return static_cast<double>(outliers) <= outlier_share * static_cast<double>(cloud.size()) ? keep_points(cloud, near)
                                                                                             : 0;

@@ -1,7 +1,10 @@
 #include "host/cloud/free_space.h"
+#include "host/cloud/quantile.h"
+#include "octree/parallel.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -12,39 +15,42 @@ namespace {
 constexpr double outermost = 0.005; // of the sites at either end of an axis: not part of the bounds
 constexpr double skipped_cells = 2.0;
 
-/// What a share of the values is below.
-double quantile(std::vector<float>& values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
-}
-
 } // namespace
 
 FreeSpace::FreeSpace(const Sites& sites, const std::vector<float>& spacing, unsigned side) {
-  Eigen::Vector3d high;
-  std::vector<float> values(sites.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::uint32_t s = 0; s < sites.size(); ++s)
-      values[s] = static_cast<float>(sites.position(s)[axis]);
-    low_[axis] = quantile(values, outermost);
-    high[axis] = quantile(values, 1.0 - outermost);
-  }
-  values = spacing;
+  const std::size_t n = sites.size();
+  const auto bounds =
+      bounds_at_ranks(n, rank_of_share(n, outermost), rank_of_share(n, 1.0 - outermost), [&](std::size_t s) {
+        return Eigen::Vector3f(sites.position(static_cast<std::uint32_t>(s)).cast<float>());
+      });
+  low_ = Eigen::Vector3d::Map(bounds[0].data());
+  Eigen::Vector3d high = Eigen::Vector3d::Map(bounds[1].data());
+  const double usual = value_at_rank(n, rank_of_share(n, 0.5), [&](std::size_t s) { return spacing[s]; });
   const double extent = (high - low_).maxCoeff();
-  cell_ = std::max({extent / side, 2.0 * quantile(values, 0.5), 1e-12});
+  cell_ = std::max({extent / side, 2.0 * usual, 1e-12});
   low_ -= Eigen::Vector3d::Constant(cell_);
   high += Eigen::Vector3d::Constant(cell_);
   for (int axis = 0; axis < 3; ++axis)
     size_[axis] = std::max(1, static_cast<int>(std::ceil((high[axis] - low_[axis]) / cell_)));
-  occupied_.assign((static_cast<std::size_t>(size_[0]) * size_[1] * size_[2] + 63) / 64, 0);
-  for (std::uint32_t s = 0; s < sites.size(); ++s) {
-    const Eigen::Vector3d at = (sites.position(s) - low_) / cell_;
-    if ((at.array() < 0).any() || at[0] >= size_[0] || at[1] >= size_[1] || at[2] >= size_[2]) continue;
-    const std::size_t cell = (static_cast<std::size_t>(at[2]) * size_[1] + static_cast<std::size_t>(at[1])) * size_[0] +
-                             static_cast<std::size_t>(at[0]);
-    occupied_[cell / 64] |= std::uint64_t{1} << (cell % 64);
-  }
+  occupy(sites);
+}
+
+void FreeSpace::occupy(const Sites& sites) {
+  std::vector<std::atomic<std::uint64_t>> occupied((static_cast<std::size_t>(size_[0]) * size_[1] * size_[2] + 63) /
+                                                   64);
+  parallel_ranges(sites.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Eigen::Vector3d at = (sites.position(static_cast<std::uint32_t>(s)) - low_) / cell_;
+      if ((at.array() < 0).any() || at[0] >= size_[0] || at[1] >= size_[1] || at[2] >= size_[2]) continue;
+      const std::size_t cell =
+          (static_cast<std::size_t>(at[2]) * size_[1] + static_cast<std::size_t>(at[1])) * size_[0] +
+          static_cast<std::size_t>(at[0]);
+      std::atomic<std::uint64_t>& word = occupied[cell / 64];
+      const std::uint64_t bit = std::uint64_t{1} << (cell % 64);
+      if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+  });
+  occupied_.assign(occupied.begin(), occupied.end());
 }
 
 Eigen::Vector3d FreeSpace::high() const {

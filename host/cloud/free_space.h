@@ -26,6 +26,7 @@ public:
   Eigen::Vector3d high() const;
 
 private:
+  void occupy(const Sites& sites);
   bool march(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double length, double skip_end) const;
 
   Eigen::Vector3d low_;

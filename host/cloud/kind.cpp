@@ -1,16 +1,21 @@
 #include "host/cloud/kind.h"
+#include "host/cloud/percent.h"
+#include "host/cloud/quantile.h"
 #include "host/cloud/sensor_view.h"
+#include "octree/parallel.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace pointgi {
 
 namespace {
 
-constexpr std::uint32_t looked_at = 4000; // sites of a sample; shares are then right to 1 %
+constexpr std::uint32_t looked_at = 4000;          // sites of a sample; shares are then right to 1 %
+constexpr std::size_t most_in_columns = 1'000'000; // some 60,000 columns: their share is right to 0.5 %
 constexpr double terrain_thickness = 0.35;
 constexpr double terrain_facing = 0.5; // mean of |n.up|
 constexpr double single_valued = 0.7;  // share of columns that hold one height
@@ -24,42 +29,47 @@ constexpr double edge_on = 0.1;
 // sensor is known.
 constexpr double uneven = 4.3;
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.0f %%", 100.0 * share);
-  return text;
-}
-
 struct Extent {
   Eigen::Vector3d low, high;
   Eigen::Vector3d size() const { return high - low; }
 };
 
-/// Of the sites on surfaces, without the outermost hundredth on each side.
+constexpr std::size_t grain = 1 << 16; // sites of a range
+
+/// Of the sites on surfaces, or of all where these are few, without the outermost hundredth on each side.
 Extent extent_of(const Sites& sites, const std::vector<Structure>& structure) {
-  const auto on_surface = [&](std::uint32_t s) { return structure.empty() || structure[s] == Structure::surface; };
-  std::array<std::vector<double>, 3> values;
-  for (std::uint32_t s = 0; s < sites.size(); ++s)
-    for (std::size_t axis = 0; on_surface(s) && axis < 3; ++axis)
-      values[axis].push_back(sites.position(s)[static_cast<Eigen::Index>(axis)]);
-  if (4 * values[0].size() < sites.size()) return extent_of(sites, {});
-  Extent extent;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double>& along = values[static_cast<std::size_t>(axis)];
-    const std::size_t cut = along.size() / 100;
-    for (const std::size_t at : {cut, along.size() - 1 - cut}) {
-      std::nth_element(along.begin(), along.begin() + static_cast<std::ptrdiff_t>(at), along.end());
-      (at == cut ? extent.low : extent.high)[axis] = along[at];
-    }
-  }
-  return extent;
+  std::vector<std::uint32_t> on_surface;
+  for (std::uint32_t s = 0; s < structure.size(); ++s)
+    if (structure[s] == Structure::surface) on_surface.push_back(s);
+  const bool all = structure.empty() || 4 * on_surface.size() < sites.size();
+  const std::size_t count = all ? sites.size() : on_surface.size(), cut = count / 100;
+  const auto bounds = bounds_at_ranks(count, cut, count - 1 - cut, [&](std::size_t i) {
+    return sites.position(all ? static_cast<std::uint32_t>(i) : on_surface[i]);
+  });
+  return {Eigen::Vector3d::Map(bounds[0].data()), Eigen::Vector3d::Map(bounds[1].data())};
 }
 
-double mean_facing(const std::vector<Eigen::Vector3f>& normals, int axis) {
-  double sum = 0;
-  for (const Eigen::Vector3f& n : normals)
-    sum += std::abs(static_cast<double>(n[axis]));
-  return sum / static_cast<double>(normals.size());
+/// How much normals face along an axis: the means of |n.axis| and of n.axis.
+struct Facing {
+  double either_way = 0, along = 0;
+
+  Facing& operator+=(const Facing& other) {
+    either_way += other.either_way;
+    along += other.along;
+    return *this;
+  }
+};
+
+Facing mean_facing(const std::vector<Eigen::Vector3f>& normals, int axis) {
+  Facing mean = parallel_sum(normals.size(), grain, Facing(), [&](Facing& sum, std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto along = static_cast<double>(normals[s][axis]);
+      sum += {std::abs(along), along};
+    }
+  });
+  mean.either_way /= static_cast<double>(normals.size());
+  mean.along /= static_cast<double>(normals.size());
+  return mean;
 }
 
 /// How the sites of a column lie about a plane of their own.
@@ -89,20 +99,23 @@ std::vector<double> residuals_of(const Sites& sites, const std::vector<std::uint
   return residuals;
 }
 
-/// Over a grid across `axis` whose cells are four distances of neighbours wide. Points of no surface do not count.
+/// Over a grid across `axis` whose cells are four distances of neighbours wide. Points of no surface do not count. Of
+/// more than a million sites in a regular sample of the columns.
 Layering layering_of(const Sites& sites, const std::vector<Structure>& structure, const Extent& extent, int axis) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
   const double area = std::max(extent.size()[a] * extent.size()[b], 1e-300);
   const double cell = std::sqrt(16.0 * area / sites.size());
   const auto columns = static_cast<std::size_t>(extent.size()[a] / cell) + 1;
   const auto rows = static_cast<std::size_t>(extent.size()[b] / cell) + 1;
-  std::vector<std::vector<std::uint32_t>> grid(columns * rows);
+  const std::size_t step = (sites.size() + most_in_columns - 1) / most_in_columns;
+  std::vector<std::vector<std::uint32_t>> grid((columns * rows + step - 1) / step);
   for (std::uint32_t s = 0; s < sites.size(); ++s) {
     if (!structure.empty() && structure[s] == Structure::line) continue;
     const Eigen::Vector3d p = (sites.position(s) - extent.low) / cell;
     if (p[a] < 0 || p[b] < 0) continue;
     const auto x = static_cast<std::size_t>(p[a]), y = static_cast<std::size_t>(p[b]);
-    if (x < columns && y < rows) grid[y * columns + x].push_back(s);
+    if (const std::size_t column = y * columns + x; x < columns && y < rows && column % step == 0)
+      grid[column / step].push_back(s);
   }
   constexpr double thick = 0.45; // of a cell
   std::size_t full = 0, single = 0;
@@ -129,51 +142,47 @@ Layering layering_of(const Sites& sites, const std::vector<Structure>& structure
   return result;
 }
 
-/// The axis along which the cloud is a height field, or -1.
-int height_axis(const Sites& sites, const Extent& extent, const std::vector<Eigen::Vector3f>& normals,
-                const std::vector<Structure>& structure, const KindHints& hints, double& share) {
+/// What a cloud that is a height field is one over.
+struct HeightField {
+  Eigen::Vector3d up;
+  double one_layer; ///< share of its places that have one height
+};
+
+std::optional<HeightField> height_field(const Sites& sites, const Extent& extent,
+                                        const std::vector<Eigen::Vector3f>& normals,
+                                        const std::vector<Structure>& structure, const KindHints& hints) {
   const Eigen::Vector3d size = extent.size();
   int thin = 0;
   size.minCoeff(&thin);
   if (hints.up) hints.up->cwiseAbs().maxCoeff(&thin);
   const double middle = size.sum() - size.minCoeff() - size.maxCoeff();
-  if (size[thin] > terrain_thickness * middle || mean_facing(normals, thin) < terrain_facing) return -1;
-  if (hints.signs_given) { // a wall that was scanned on both sides is none
-    double sum = 0;
-    for (const Eigen::Vector3f& n : normals)
-      sum += static_cast<double>(n[thin]);
-    if (std::abs(sum) < terrain_facing * static_cast<double>(normals.size())) return -1;
-  }
+  if (size[thin] > terrain_thickness * middle) return {};
+  const Facing facing = mean_facing(normals, thin);
+  if (facing.either_way < terrain_facing) return {};
+  if (hints.signs_given && std::abs(facing.along) < terrain_facing) return {}; // a wall scanned on both sides is none
   const Layering layers = layering_of(sites, structure, extent, thin);
-  share = layers.one_layer;
-  return share > single_valued && layers.kurtosis > two_sheets ? thin : -1;
-}
-
-/// -1 where given normals face down the axis, as in coordinates that count downwards.
-double side_along(const std::vector<Eigen::Vector3f>& normals, int axis, const KindHints& hints) {
-  double sum = 0;
-  for (const Eigen::Vector3f& n : normals)
-    sum += static_cast<double>(n[axis]);
-  return hints.signs_given && sum < 0 ? -1.0 : 1.0;
+  if (layers.one_layer <= single_valued || layers.kurtosis <= two_sheets) return {};
+  // Given normals face down the axis in coordinates that count downwards.
+  const double side = hints.signs_given && facing.along < 0 ? -1.0 : 1.0;
+  return HeightField{hints.up ? *hints.up : Eigen::Vector3d(Eigen::Vector3d::Unit(thin) * side), layers.one_layer};
 }
 
 /// Whether normals that have signs point to the middle of the sites.
 bool points_inwards(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const Extent& extent) {
   const Eigen::Vector3d middle = 0.5 * (extent.low + extent.high);
-  double sum = 0;
-  for (std::uint32_t s = 0; s < sites.size(); ++s)
-    sum += normals[s].cast<double>().dot((middle - sites.position(s)).normalized());
+  const double sum = parallel_sum(sites.size(), grain, 0.0, [&](double& part, std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      part += normals[s].cast<double>().dot((middle - sites.position(static_cast<std::uint32_t>(s))).normalized());
+  });
   return sum > 0.5 * sites.size();
 }
 
 /// The spacing that nine tenths of the sites stay below, over that of one tenth.
-double unevenness(std::vector<float> spacing) {
-  const auto at = [&](double share) {
-    const auto place = spacing.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(spacing.size() - 1));
-    std::nth_element(spacing.begin(), place, spacing.end());
-    return static_cast<double>(*place);
-  };
-  return at(0.9) / at(0.1);
+double unevenness(const std::vector<float>& spacing) {
+  const std::size_t n = spacing.size();
+  const auto found = values_at_ranks(n, std::array<std::size_t, 2>{rank_of_share(n, 0.1), rank_of_share(n, 0.9)},
+                                     [&](std::size_t s, std::size_t) { return spacing[s]; });
+  return found[1] / found[0];
 }
 
 /// Median of the cosine under which the sensor sees the surface: near 0, and it cannot have scanned it.
@@ -184,19 +193,16 @@ double median_cosine(const Sites& sites, const std::vector<Eigen::Vector3f>& nor
     const Eigen::Vector3d way = sites.position(s) - sensor;
     cosines.push_back(std::abs(normals[s].cast<double>().dot(way)) / std::max(way.norm(), 1e-30));
   }
-  const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
-  std::nth_element(cosines.begin(), middle, cosines.end());
-  return *middle;
+  return median(std::move(cosines));
 }
 
-/// Share of the sites near the six sides of the bounds, if every side has some; else 0.
-double box_share(const Sites& sites, const Extent& extent) {
+/// How many sites are on each of the six sides of a box, on any, and in or on it.
+struct BoxCounts {
   std::array<std::size_t, 6> on{};
   std::size_t any = 0, inside = 0;
-  const double near = 0.03 * extent.size().maxCoeff();
-  for (std::uint32_t s = 0; s < sites.size(); ++s) {
-    const Eigen::Vector3d& p = sites.position(s);
-    if ((p.array() < extent.low.array() - near).any() || (p.array() > extent.high.array() + near).any()) continue;
+
+  void add(const Eigen::Vector3d& p, const Extent& extent, double near) {
+    if ((p.array() < extent.low.array() - near).any() || (p.array() > extent.high.array() + near).any()) return;
     ++inside;
     bool wall = false;
     for (int axis = 0; axis < 3; ++axis)
@@ -207,8 +213,25 @@ double box_share(const Sites& sites, const Extent& extent) {
         }
     any += wall;
   }
-  if (*std::min_element(on.begin(), on.end()) * 50 < inside) return 0.0;
-  return static_cast<double>(any) / static_cast<double>(std::max<std::size_t>(inside, 1));
+  BoxCounts& operator+=(const BoxCounts& other) {
+    for (std::size_t side = 0; side < on.size(); ++side)
+      on[side] += other.on[side];
+    any += other.any;
+    inside += other.inside;
+    return *this;
+  }
+};
+
+/// Share of the sites near the six sides of the bounds, if every side has some; else 0.
+double box_share(const Sites& sites, const Extent& extent) {
+  const double near = 0.03 * extent.size().maxCoeff();
+  const BoxCounts counts =
+      parallel_sum(sites.size(), grain, BoxCounts(), [&](BoxCounts& sum, std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s)
+          sum.add(sites.position(static_cast<std::uint32_t>(s)), extent, near);
+      });
+  if (*std::min_element(counts.on.begin(), counts.on.end()) * 50 < counts.inside) return 0.0;
+  return static_cast<double>(counts.any) / static_cast<double>(std::max<std::size_t>(counts.inside, 1));
 }
 
 /// Metres, as nearly all scans of rooms have them.
@@ -243,18 +266,15 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spac
                   100.0 * view.one_depth,
                   view.lattice ? "in rows and columns as pixels have" : "evenly spread over the directions");
     // A scanner that turns looks along the ground, a depth camera along its own z.
-    const Eigen::Vector3d ahead = (extent_of(sites, structure).low + extent_of(sites, structure).high) / 2 - origin;
+    const Extent extent = extent_of(sites, structure);
+    const Eigen::Vector3d ahead = (extent.low + extent.high) / 2 - origin;
     const bool frame = view.lattice || (!view.all_around && std::abs(ahead.z()) > 0.8 * ahead.norm() && !hints.up);
     return {frame ? CloudKind::depth_frame : CloudKind::station, text, Eigen::Vector3d(Eigen::Vector3d::Zero()),
             frame ? hints.up : hints.up.value_or(Eigen::Vector3d::UnitZ())};
   }
   const Extent extent = extent_of(sites, structure);
-  double share = 0;
-  if (const int axis = height_axis(sites, extent, normals, structure, hints, share); axis >= 0)
-    return {CloudKind::terrain,
-            "one height at " + percent(share) + " of the places",
-            {},
-            hints.up ? *hints.up : Eigen::Vector3d(Eigen::Vector3d::Unit(axis) * side_along(normals, axis, hints))};
+  if (const auto field = height_field(sites, extent, normals, structure, hints))
+    return {CloudKind::terrain, "one height at " + percent(field->one_layer, 0) + " of the places", {}, field->up};
   if (const double step = unevenness(spacing); step > uneven && !hints.up) {
     char text[80];
     std::snprintf(text, sizeof text, "the spacing of its points differs by a factor of %.1f", step);
@@ -263,19 +283,21 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spac
   const auto volume = std::count(structure.begin(), structure.end(), Structure::volume);
   if (static_cast<double>(volume) > mostly_volume * sites.size())
     return {CloudKind::foliage,
-            percent(static_cast<double>(volume) / sites.size()) + " of the points have no surface around them",
+            percent(static_cast<double>(volume) / sites.size(), 0) + " of the points have no surface around them",
             {},
             hints.up};
   const Eigen::Vector3d size = extent.size() * sites.unit();
   if (has_size_of_a_room(size) && (!hints.signs_given || points_inwards(sites, normals, extent)))
     if (const double walls = box_share(sites, extent); walls > on_the_walls)
       return {CloudKind::room,
-              percent(walls) + " of the points lie on the six sides of a box as large as a room",
+              percent(walls, 0) + " of the points lie on the six sides of a box as large as a room",
               {},
               hints.up};
   if (const double inside = enclosed_share(sites, normals, space); inside > many_enclosed)
-    return {
-        CloudKind::room, percent(inside) + " of the points have something in front of both their sides", {}, hints.up};
+    return {CloudKind::room,
+            percent(inside, 0) + " of the points have something in front of both their sides",
+            {},
+            hints.up};
   if (hints.up) return {CloudKind::map, "the format knows which way is up", {}, hints.up};
   return {CloudKind::model, "nothing speaks for another kind", {}, {}};
 }

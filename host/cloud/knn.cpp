@@ -50,8 +50,10 @@ void set_far_list(std::int16_t* offset, std::size_t list) {
 
 void Sites::choose_frame(const std::vector<Eigen::Vector3d>& positions) {
   const std::size_t n = positions.size();
-  for (int axis = 0; axis < 3; ++axis)
-    centre_[axis] = value_at_rank(n, n / 2, [&](std::size_t i) { return positions[i][axis]; });
+  const auto medians =
+      values_at_ranks(n, std::array<std::size_t, 3>{n / 2, n / 2, n / 2},
+                      [&](std::size_t i, std::size_t axis) { return positions[i][static_cast<Eigen::Index>(axis)]; });
+  centre_ = Eigen::Vector3d::Map(medians.data());
   const auto distance = [&](std::size_t i) {
     return std::min((positions[i] - centre_).cwiseAbs().maxCoeff(), std::numeric_limits<double>::max());
   };
@@ -156,9 +158,9 @@ unsigned Sites::nearest(std::uint32_t site, unsigned k, Neighbour* out) const {
   return k;
 }
 
-void Sites::keep_neighbours(unsigned k) {
+bool Sites::keep_neighbours(unsigned k, const SeeNeighbours& see) {
   constexpr std::size_t grain = 1 << 12;
-  if (k < least_kept || k >= size()) return;
+  if (k < least_kept || k >= size()) return false;
   kept_ = 0;
   near_neighbours_.resize(static_cast<std::size_t>(size()) * k);
   std::vector<std::vector<std::uint32_t>> far((size() + grain - 1) / grain);
@@ -166,6 +168,7 @@ void Sites::keep_neighbours(unsigned k) {
     std::vector<Neighbour> near(k);
     for (std::size_t site = begin; site < end; ++site) {
       nearest(static_cast<std::uint32_t>(site), k, near.data());
+      if (see) see(static_cast<std::uint32_t>(site), near.data());
       std::int16_t* to = &near_neighbours_[site * k];
       bool fits = true;
       for (unsigned j = 0; j < k; ++j) {
@@ -191,6 +194,7 @@ void Sites::keep_neighbours(unsigned k) {
       if (std::int16_t* to = &near_neighbours_[site * k]; to[0] == 0) set_far_list(to, first[range] / k + far_list(to));
   });
   kept_ = k;
+  return true;
 }
 
 unsigned Sites::nearest_to(const Eigen::Vector3d& local, unsigned k, Neighbour* out) const {

@@ -3,6 +3,7 @@
 #include "host/cloud/site_tree.h"
 #include "octree/build/key_sort.h"
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -47,8 +48,10 @@ public:
   /// how many there were: min(k, size() - 1). Several times faster where a thread asks for sites in ascending order.
   unsigned nearest(std::uint32_t site, unsigned k, Neighbour* out) const;
   /// Finds the k nearest of every site, on all cores, and keeps them in 2 k bytes a site: nearest() then looks up as
-  /// many or fewer. For clouds that are gone through several times.
-  void keep_neighbours(unsigned k);
+  /// many or fewer. For clouds that are gone through several times. `see(site, near)`: called with each site's k on the
+  /// way, on all cores at once. False, and nothing is kept or seen, unless 3 <= k < size().
+  using SeeNeighbours = std::function<void(std::uint32_t, const Neighbour*)>;
+  bool keep_neighbours(unsigned k, const SeeNeighbours& see = {});
   /// nearest() around any position in local units, sites at that very position included.
   unsigned nearest_to(const Eigen::Vector3d& local, unsigned k, Neighbour* out) const;
 

@@ -1,4 +1,5 @@
 #include "host/cloud/orient.h"
+#include "host/cloud/quantile.h"
 #include "host/cloud/spanning_forest.h"
 #include "octree/parallel.h"
 #include <Eigen/Dense>
@@ -47,9 +48,8 @@ std::vector<TreeShape> tree_shapes(const Sites& sites, const SpanningForest& for
                                    const std::vector<Eigen::Vector3f>& normals) {
   std::vector<TreeShape> shapes(forest.trees);
   // An outlier's share would be the square of its distance: no site counts for more than a hundred usual ones.
-  std::vector<float> areas = forest.spacing2;
-  std::nth_element(areas.begin(), areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2), areas.end());
-  const double most = std::max(100.0 * static_cast<double>(areas[areas.size() / 2]), 1e-30);
+  const double usual = median(forest.spacing2.size(), [&](std::size_t s) { return forest.spacing2[s]; });
+  const double most = std::max(100.0 * usual, 1e-30);
   const auto area = [&](std::uint32_t s) { return std::clamp(static_cast<double>(forest.spacing2[s]), 1e-30, most); };
   for (std::uint32_t s = 0; s < sites.size(); ++s) {
     TreeShape& shape = shapes[forest.tree[s]];
@@ -308,8 +308,10 @@ void turn_towards_stations(const Sites& sites, const OrientationEvidence& eviden
 /// Height fields: what is nearly upright goes with the patch it belongs to.
 void turn_upwards(const Sites& sites, const Eigen::Vector3d& up, std::vector<Eigen::Vector3f>& normals) {
   const Eigen::Vector3f direction = up.cast<float>();
-  for (std::uint32_t s = 0; s < sites.size(); ++s)
-    if (normals[s].dot(direction) < 0.0f) normals[s] = -normals[s];
+  parallel_ranges(sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      if (normals[s].dot(direction) < 0.0f) normals[s] = -normals[s];
+  });
 }
 
 std::string axis_name(const Eigen::Vector3d& direction) {
@@ -321,13 +323,10 @@ std::string axis_name(const Eigen::Vector3d& direction) {
 } // namespace
 
 bool may_have_seen(const Sites& sites, const Eigen::Vector3d& station) {
-  std::vector<double> distance(sites.size());
   const Eigen::Vector3d place = sites.to_local(station);
-  for (std::uint32_t s = 0; s < sites.size(); ++s)
-    distance[s] = (sites.position(s) - place).norm();
-  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
-  std::nth_element(distance.begin(), middle, distance.end());
-  return *middle <= farthest_sensor * 4.0; // half of the cloud lies within 1 local unit of its median
+  const double usual = median(
+      sites.size(), [&](std::size_t s) { return (sites.position(static_cast<std::uint32_t>(s)) - place).norm(); });
+  return usual <= farthest_sensor * 4.0; // half of the cloud lies within 1 local unit of its median
 }
 
 Orientation orient_normals(const Sites& sites, const OrientationEvidence& evidence, const FreeSpace& space,

@@ -1,4 +1,5 @@
 #include "host/cloud/precision.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -6,16 +7,28 @@
 
 namespace pointgi {
 
+namespace {
+
+struct Bounds {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+
+  Bounds& operator+=(const Bounds& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+    return *this;
+  }
+};
+
+} // namespace
+
 std::optional<std::string> float_precision_warning(const std::vector<Eigen::Vector3d>& positions,
                                                    const std::array<bool, 3>& stored_as_float) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(infinity);
-  Eigen::Vector3d high = -low;
-  for (const Eigen::Vector3d& p : positions) {
-    if (!p.allFinite()) continue;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const Bounds bounds =
+      parallel_sum(positions.size(), 1 << 16, Bounds(), [&](Bounds& sum, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (positions[i].allFinite()) sum += {positions[i], positions[i]};
+      });
+  const Eigen::Vector3d &low = bounds.low, &high = bounds.high;
   if (!(low.x() <= high.x())) return std::nullopt;
   const double diagonal = (high - low).norm();
   double farthest = 0.0;

@@ -14,71 +14,123 @@ namespace detail {
 constexpr std::size_t quantile_samples = 1 << 14;
 constexpr double quantile_margin = 5.0; // standard deviations of the sample's rank
 
-/// Two values of a regular sample that very likely enclose the one of the rank: then few values lie between them.
-template <class Value>
-std::array<double, 2> quantile_bracket(std::size_t n, std::size_t rank, const Value& value) {
-  std::vector<double> sample(quantile_samples);
-  for (std::size_t s = 0; s < quantile_samples; ++s)
-    sample[s] = value(s * n / quantile_samples);
-  std::sort(sample.begin(), sample.end());
-  constexpr auto m = static_cast<double>(quantile_samples);
-  const double share = static_cast<double>(rank) / static_cast<double>(n);
-  const double reach = quantile_margin * std::sqrt(m * share * (1.0 - share)) + 8.0;
-  const auto at = [&](double place) { return sample[static_cast<std::size_t>(std::clamp(place, 0.0, m - 1.0))]; };
-  return {at(m * share - reach), at(m * share + reach)};
-}
-
-/// The values inside the bracket, and how many are below it.
-template <class Value>
-std::size_t enclosed_values(std::size_t n, const std::array<double, 2>& bracket, const Value& value,
-                            std::vector<double>& enclosed) {
-  const std::size_t grain = std::max<std::size_t>(quantile_samples, (n + 31) / 32);
-  struct Range {
-    std::size_t below = 0;
-    std::vector<double> enclosed;
-  };
-  std::vector<Range> ranges((n + grain - 1) / grain);
-  parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
-    Range& range = ranges[begin / grain];
-    for (std::size_t i = begin; i < end; ++i) {
-      const double v = value(i);
-      range.below += v < bracket[0] ? 1u : 0u;
-      if (v >= bracket[0] && v <= bracket[1]) range.enclosed.push_back(v);
-    }
-  });
+/// Values between two that very likely enclose the one of a rank, and how many are below.
+struct Enclosed {
+  double low, high;
   std::size_t below = 0;
-  for (const Range& range : ranges) {
-    below += range.below;
-    enclosed.insert(enclosed.end(), range.enclosed.begin(), range.enclosed.end());
+  std::vector<double> values;
+
+  void add(double v) {
+    below += v < low ? 1u : 0u;
+    if (v >= low && v <= high) values.push_back(v);
   }
-  return below;
+};
+
+/// The ends of the brackets, from a regular sample: then few values lie in each.
+template <std::size_t Ranks, class Value>
+std::array<Enclosed, Ranks> quantile_brackets(std::size_t n, const std::array<std::size_t, Ranks>& ranks,
+                                              const Value& value) {
+  constexpr auto m = static_cast<double>(quantile_samples);
+  std::vector<double> sample(quantile_samples);
+  std::array<Enclosed, Ranks> brackets;
+  for (std::size_t r = 0; r < Ranks; ++r) {
+    for (std::size_t s = 0; s < quantile_samples; ++s)
+      sample[s] = static_cast<double>(value(s * n / quantile_samples, r));
+    const double share = static_cast<double>(ranks[r]) / static_cast<double>(n);
+    const double reach = quantile_margin * std::sqrt(m * share * (1.0 - share)) + 8.0;
+    const auto at = [&](double place) {
+      const auto found = sample.begin() + static_cast<std::ptrdiff_t>(std::clamp(place, 0.0, m - 1.0));
+      std::nth_element(sample.begin(), found, sample.end());
+      return *found;
+    };
+    brackets[r].low = at(m * share - reach);
+    brackets[r].high = at(m * share + reach);
+  }
+  return brackets;
 }
 
-} // namespace detail
-
-/// The value that would stand at place `rank` (below n) if value(0) … value(n - 1) were sorted; none may be NaN. Works
-/// on all cores; `value` is called more than once for an index.
-template <class Value>
-double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
-  std::vector<double> values;
-  if (n > 4 * detail::quantile_samples) {
-    const std::size_t below = detail::enclosed_values(n, detail::quantile_bracket(n, rank, value), value, values);
-    if (rank >= below && rank - below < values.size()) {
-      const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank - below);
-      std::nth_element(values.begin(), at, values.end());
-      return *at;
+/// Fills the brackets.
+template <std::size_t Ranks, class Value>
+void enclose_values(std::size_t n, std::array<Enclosed, Ranks>& brackets, const Value& value) {
+  const std::size_t grain = std::max<std::size_t>(quantile_samples, (n + 31) / 32);
+  std::vector<std::array<Enclosed, Ranks>> ranges((n + grain - 1) / grain, brackets);
+  parallel_ranges(n, grain, [&](std::size_t begin, std::size_t end) {
+    std::array<Enclosed, Ranks>& range = ranges[begin / grain];
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t r = 0; r < Ranks; ++r)
+        range[r].add(static_cast<double>(value(i, r)));
+  });
+  for (const auto& range : ranges)
+    for (std::size_t r = 0; r < Ranks; ++r) {
+      brackets[r].below += range[r].below;
+      brackets[r].values.insert(brackets[r].values.end(), range[r].values.begin(), range[r].values.end());
     }
-  }
-  values.resize(n); // few, or the sample led astray
-  for (std::size_t i = 0; i < n; ++i)
-    values[i] = value(i);
+}
+
+inline double nth_value(std::vector<double>& values, std::size_t rank) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-/// The middle value, the upper one of two. At least one value.
-inline float median(std::vector<float> values) {
+} // namespace detail
+
+/// For each r the value that would stand at place ranks[r] (below n) if value(0, r) … value(n - 1, r) were sorted; none
+/// may be NaN. Works on all cores; `value` is called more than once for an index.
+template <std::size_t Ranks, class Value>
+std::array<double, Ranks> values_at_ranks(std::size_t n, const std::array<std::size_t, Ranks>& ranks,
+                                          const Value& value) {
+  std::array<double, Ranks> found{};
+  std::array<bool, Ranks> done{};
+  if (n > 4 * detail::quantile_samples) {
+    auto brackets = detail::quantile_brackets(n, ranks, value);
+    detail::enclose_values(n, brackets, value);
+    for (std::size_t r = 0; r < Ranks; ++r) {
+      detail::Enclosed& b = brackets[r];
+      done[r] = ranks[r] >= b.below && ranks[r] - b.below < b.values.size();
+      if (done[r]) found[r] = detail::nth_value(b.values, ranks[r] - b.below);
+    }
+  }
+  std::vector<double> all;
+  for (std::size_t r = 0; r < Ranks; ++r) {
+    if (done[r]) continue;
+    all.resize(n); // few, or the sample led astray
+    for (std::size_t i = 0; i < n; ++i)
+      all[i] = static_cast<double>(value(i, r));
+    found[r] = detail::nth_value(all, ranks[r]);
+  }
+  return found;
+}
+
+/// The same of value(0) … value(n - 1).
+template <class Value>
+double value_at_rank(std::size_t n, std::size_t rank, const Value& value) {
+  return values_at_ranks(n, std::array<std::size_t, 1>{rank}, [&](std::size_t i, std::size_t) { return value(i); })[0];
+}
+
+/// Of each axis the values at two ranks, `low` and `high`; position(i)[axis] for i below n.
+template <class Position>
+std::array<std::array<double, 3>, 2> bounds_at_ranks(std::size_t n, std::size_t low, std::size_t high,
+                                                     const Position& position) {
+  const auto found = values_at_ranks(n, std::array<std::size_t, 6>{low, low, low, high, high, high},
+                                     [&](std::size_t i, std::size_t r) { return position(i)[r % 3]; });
+  return {{{found[0], found[1], found[2]}, {found[3], found[4], found[5]}}};
+}
+
+/// The place of what a share, 0 .. 1, of n > 0 values is below.
+inline std::size_t rank_of_share(std::size_t n, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(n - 1));
+}
+
+/// The middle value, the upper one of two, of many; n > 0.
+template <class Value>
+double median(std::size_t n, const Value& value) {
+  return value_at_rank(n, n / 2, value);
+}
+
+/// The middle value, the upper one of two, of a few. At least one value.
+template <class T>
+T median(std::vector<T> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

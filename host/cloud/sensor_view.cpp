@@ -1,4 +1,5 @@
 #include "host/cloud/sensor_view.h"
+#include "host/cloud/quantile.h"
 #include "octree/parallel.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,12 +20,6 @@ constexpr double least_one_depth = 0.97;
 constexpr double farthest_sensor = 10.0;   // sizes of the cloud
 constexpr double least_range_ratio = 1.35; // of a cloud whose evenness tells something
 constexpr double least_evenness = -0.25;   // scanners have -0.01 to 0.2, sparse points of structure from motion -0.4
-
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Share of distinct values, to a hundred-thousandth of their range.
 double distinct_share(std::vector<double> values) {
@@ -112,8 +107,9 @@ SensorView sensor_view(const Sites& sites, const Eigen::Vector3d& sensor) {
     if (range >= three_quarters) far_angles.push_back(angle[s]);
   }
   if (!near_angles.empty() && !far_angles.empty() && view.range_ratio > 1.0)
-    view.evenness = std::log(std::max(1e-12, middle_of(far_angles)) / std::max(1e-12, middle_of(near_angles))) /
-                    std::log(view.range_ratio);
+    view.evenness =
+        std::log(std::max(1e-12, median(std::move(far_angles))) / std::max(1e-12, median(std::move(near_angles)))) /
+        std::log(view.range_ratio);
   return view;
 }
 

@@ -15,11 +15,7 @@ namespace pointgi {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr unsigned spacing_neighbours = 6;
-constexpr double isolated_factor = 8.0; // spacing over that of the neighbours; a 16-fold density step gives 4 to 6
-constexpr double stray_factor = 3.0;    // of the cloud's median spacing: open and sparser than this is a stray clump
-constexpr unsigned isolated_neighbours = 12;
-constexpr double opposite_cosine = -0.3;
+constexpr double stray_factor = 3.0; // of the cloud's median spacing: open and sparser than this is a stray clump
 
 // A cell is exact when no neighbour left out could be nearer than twice its farthest corner. Where 20 do not suffice,
 // more are fetched; 160 see across a density step of 16 and tell it from a boundary.
@@ -30,43 +26,6 @@ constexpr float largest_step =
 constexpr double widest_gap = 125.0 / 180.0 * pi; // between neighbours; wider and the surface ends there
 constexpr double least_cosine = 0.7;     // of neighbours' normals; where they are rougher discs would grow into blobs
 constexpr unsigned alike_candidates = 8; // points looked at, of those that share a site
-
-float spacing_of(const Neighbour* near, unsigned count) {
-  // In the plane count = density pi d²; four neighbours of a row of five, or two points, still give their distance.
-  const unsigned m = std::min(count, spacing_neighbours);
-  return std::sqrt(near[m - 1].distance2 * static_cast<float>(pi / spacing_neighbours));
-}
-
-/// Median of the neighbours' own spacings (the lower one).
-float neighbours_spacing(const Sites& sites, std::uint32_t site, const std::vector<float>& spacing) {
-  std::array<Neighbour, isolated_neighbours> near;
-  std::array<float, isolated_neighbours> values;
-  const unsigned count = sites.nearest(site, isolated_neighbours, near.data());
-  for (unsigned j = 0; j < count; ++j)
-    values[j] = spacing[near[j].site];
-  std::nth_element(values.begin(), values.begin() + (count - 1) / 2, values.begin() + count);
-  return values[(count - 1) / 2];
-}
-
-/// Whether two neighbours on one surface have contrary signs. Those of a thin wall's two sides, back to back or, across
-/// a gap, face to face, are right as they are.
-bool oppose(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& e) {
-  if (static_cast<double>(a.dot(b)) > opposite_cosine) return false;
-  const float above = a.dot(e), below = b.dot(e), clear = 0.02f * e.norm();
-  return !(above > clear && below < -clear) && !(above < -clear && below > clear);
-}
-
-void rein_in_isolated(const Sites& sites, std::vector<float>& spacing) {
-  const float suspicious = median(spacing) * static_cast<float>(isolated_factor);
-  const std::vector<float> own = spacing;
-  parallel_ranges(sites.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      if (own[s] <= suspicious) continue;
-      const float usual = neighbours_spacing(sites, static_cast<std::uint32_t>(s), own);
-      if (own[s] > static_cast<float>(isolated_factor) * usual) spacing[s] = usual;
-    }
-  });
-}
 
 struct Candidate {
   Eigen::Vector2d offset;
@@ -297,41 +256,6 @@ float positive_float(double value) {
 
 } // namespace
 
-SiteSpacing site_spacing(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, bool reined_in) {
-  SiteSpacing result;
-  result.spacing.assign(sites.size(),
-                        static_cast<float>(std::sqrt(2.0) / splat_overlap)); // a square for a disc of radius 1
-  if (!normals.empty()) result.normal.resize(sites.size());
-  parallel_ranges(result.normal.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s)
-      result.normal[s] = normals[*sites.points(static_cast<std::uint32_t>(s)).begin()];
-  });
-  if (sites.size() == 1) return result;
-  std::atomic<std::uint64_t> pairs{0}, opposite{0};
-  parallel_ranges(sites.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    std::array<Neighbour, spacing_neighbours> near;
-    std::uint64_t pairs_here = 0, opposite_here = 0;
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto site = static_cast<std::uint32_t>(s);
-      const unsigned count = sites.nearest(site, spacing_neighbours, near.data());
-      result.spacing[s] = std::max(spacing_of(near.data(), count), 1e-18f);
-      if (normals.empty()) continue;
-      const Eigen::Vector3f& normal = result.normal[s];
-      for (unsigned j = 0; j < count; ++j) {
-        const Eigen::Vector3f e = (sites.position(near[j].site) - sites.position(site)).cast<float>();
-        if (std::abs(e.dot(normal)) > 0.5f * e.norm()) continue; // above or below, not beside
-        ++pairs_here;
-        opposite_here += oppose(normal, result.normal[near[j].site], e);
-      }
-    }
-    pairs += pairs_here;
-    opposite += opposite_here;
-  });
-  if (pairs > 0) result.opposite = static_cast<double>(opposite) / static_cast<double>(pairs);
-  if (reined_in) rein_in_isolated(sites, result.spacing);
-  return result;
-}
-
 SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
                        bool faces_agree, bool noisy) {
   SplatSizes sizes;
@@ -339,7 +263,7 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
   sizes.area.resize(normals.size());
   std::atomic<std::size_t> capped{0};
   const double unit = sites.unit();
-  const double usual = median(spacing.spacing);
+  const double usual = median(spacing.spacing.size(), [&](std::size_t s) { return spacing.spacing[s]; });
   parallel_ranges(sites.size(), 512, [&](std::size_t begin, std::size_t end) {
     CellMaker maker(sites, normals, spacing, faces_agree);
     std::size_t capped_here = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace pointgi {
 
@@ -19,6 +20,19 @@ constexpr float alone = 4.0f;
 constexpr float sparse = 3.0f;       // of the cloud's median spacing
 constexpr double fills_space = 0.15; // least variance over the middle one; a sheet that is rough by its spacing: 0.1
 constexpr double no_line = 0.01;     // middle variance over the largest
+
+constexpr float densest_suspicion = 1.5f; // of the median spacing around, along the curve: denser sites are no strays
+
+/// The median of a range of sites, most of which need no search where it is known; infinite where no spacing is over
+/// densest_suspicion times it.
+float median_if_uneven(const std::vector<float>& spacing, std::size_t begin, std::size_t end) {
+  const auto first = spacing.begin() + static_cast<std::ptrdiff_t>(begin),
+             past = spacing.begin() + static_cast<std::ptrdiff_t>(end);
+  const float most = *std::max_element(first, past);
+  const auto denser = std::count_if(first, past, [&](float s) { return densest_suspicion * s < most; });
+  if (2 * denser <= past - first) return std::numeric_limits<float>::infinity(); // the median is none of these
+  return median(std::vector<float>(first, past));
+}
 
 bool is_alone(float own, const Neighbour* near, unsigned count, const std::vector<float>& spacing) {
   std::array<float, neighbours> theirs;
@@ -49,14 +63,12 @@ bool lies_in_a_crowd(const Sites& sites, std::uint32_t site, const Neighbour* ne
 std::vector<char> find_strays(const Sites& sites, const std::vector<float>& spacing) {
   std::vector<char> stray(sites.size(), 0);
   if (sites.size() < least_sites) return stray;
-  const float usual = median(spacing);
+  const auto usual = static_cast<float>(median(spacing.size(), [&](std::size_t s) { return spacing[s]; }));
   parallel_ranges(sites.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, neighbours> near;
-    // Of the sites around along the curve: most sites are no sparser than these, and need no search.
-    const float around = median(
-        {spacing.begin() + static_cast<std::ptrdiff_t>(begin), spacing.begin() + static_cast<std::ptrdiff_t>(end)});
+    const float dense = densest_suspicion * std::min(median_if_uneven(spacing, begin, end), usual);
     for (std::size_t s = begin; s < end; ++s) {
-      if (spacing[s] <= 1.5f * std::min(around, usual)) continue;
+      if (spacing[s] <= dense) continue;
       const auto site = static_cast<std::uint32_t>(s);
       const unsigned count = sites.nearest(site, neighbours, near.data());
       stray[s] = is_alone(spacing[s], near.data(), count, spacing) ||

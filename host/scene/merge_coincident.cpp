@@ -70,9 +70,34 @@ bool same_place(const Splat& a, const Splat& b) {
   return std::memcmp(a.position, b.position, sizeof a.position) == 0 && a.material == b.material;
 }
 
-/// Splats of one place and material follow each other, by index: in cells along a curve, which are sorted by their
-/// digits, and compared only with what is in the same cell.
-std::vector<std::uint32_t> order_by_place(const std::vector<Splat>& splats) {
+/// Splats that share place and material: groups of two and more, one behind the other.
+struct Groups {
+  std::vector<std::uint32_t> member;
+  std::vector<std::size_t> end; ///< of each group, in `member`
+
+  /// Those among splats in one cell of the curve.
+  void add_cell(const std::vector<Splat>& splats, std::vector<std::uint32_t>& cell) {
+    std::sort(cell.begin(), cell.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return before(splats[a], splats[b]) || (!before(splats[b], splats[a]) && a < b);
+    });
+    for (std::size_t i = 0, past = 0; i < cell.size(); i = past) {
+      for (past = i + 1; past < cell.size() && same_place(splats[cell[i]], splats[cell[past]]);)
+        ++past;
+      if (past == i + 1) continue;
+      member.insert(member.end(), cell.begin() + static_cast<std::ptrdiff_t>(i),
+                    cell.begin() + static_cast<std::ptrdiff_t>(past));
+      end.push_back(member.size());
+    }
+  }
+  void add(const Groups& other) {
+    for (const std::size_t past : other.end)
+      end.push_back(member.size() + past);
+    member.insert(member.end(), other.member.begin(), other.member.end());
+  }
+};
+
+/// Found in cells along a curve, which are sorted by their digits: only what is in the same cell is compared.
+Groups coincident_groups(const std::vector<Splat>& splats) {
   constexpr std::size_t grain = 1 << 14;
   Pool<KeyedIndex> items(splats.size());
   parallel_ranges(items.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -82,49 +107,51 @@ std::vector<std::uint32_t> order_by_place(const std::vector<Splat>& splats) {
   sort_by_key(items);
   const std::vector<std::size_t> cuts =
       cuts_between_keys(items.size(), grain, [&](std::size_t i) { return items[i].key; });
-  std::vector<std::uint32_t> order(splats.size());
-  parallel_ranges(cuts.size() - 1, 1, [&](std::size_t range, std::size_t) {
+  std::vector<Groups> found(cuts.size() - 1);
+  parallel_ranges(found.size(), 1, [&](std::size_t range, std::size_t) {
+    std::vector<std::uint32_t> cell;
     for (std::size_t i = cuts[range], past; i < cuts[range + 1]; i = past) {
-      order[i] = items[i].index;
-      for (past = i + 1; past < cuts[range + 1] && items[past].key == items[i].key; ++past)
-        order[past] = items[past].index;
+      for (past = i + 1; past < cuts[range + 1] && items[past].key == items[i].key;)
+        ++past;
       if (past == i + 1) continue;
-      std::sort(order.begin() + static_cast<std::ptrdiff_t>(i), order.begin() + static_cast<std::ptrdiff_t>(past),
-                [&](std::uint32_t a, std::uint32_t b) {
-                  return before(splats[a], splats[b]) || (!before(splats[b], splats[a]) && a < b);
-                });
+      cell.clear();
+      for (std::size_t k = i; k < past; ++k)
+        cell.push_back(items[k].index);
+      found[range].add_cell(splats, cell);
     }
   });
-  return order;
+  Groups all;
+  for (const Groups& groups : found)
+    all.add(groups);
+  return all;
 }
 
 } // namespace
 
 std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id,
                                           std::vector<CoincidentSides>* pairs) {
-  const std::vector<std::uint32_t> order = order_by_place(splats);
+  const Groups groups = coincident_groups(splats);
+  if (groups.end.empty()) return {};
   std::vector<bool> gone(splats.size(), false);
   std::vector<MergedSplat> merged;
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    for (end = begin + 1; end < order.size() && same_place(splats[order[begin]], splats[order[end]]);)
-      ++end;
-    if (end == begin + 1) continue;
+  for (std::size_t group = 0, begin = 0; group < groups.end.size(); begin = groups.end[group++]) {
     std::vector<std::pair<std::uint32_t, Sum>> sides; // a few: fronts, backs, the faces at a corner
-    for (std::size_t k = begin; k < end; ++k) {
-      const Splat& s = splats[order[k]];
+    for (std::size_t k = begin; k < groups.end[group]; ++k) {
+      const std::uint32_t index = groups.member[k];
+      const Splat& s = splats[index];
       auto side =
           std::find_if(sides.begin(), sides.end(), [&](const auto& other) { return alike(other.second.first, s); });
       if (side == sides.end()) {
-        sides.push_back({order[k], Sum{s}});
+        sides.push_back({index, Sum{s}});
         side = sides.end() - 1;
       } else {
-        gone[order[k]] = true;
-        merged.push_back({id[order[k]], id[side->first]});
+        gone[index] = true;
+        merged.push_back({id[index], id[side->first]});
       }
       side->second.add(s);
     }
-    for (const auto& [index, sum] : sides)
-      splats[index] = sum.mean();
+    for (const auto& [first, sum] : sides)
+      splats[first] = sum.mean();
     if (pairs != nullptr && sides.size() == 2 && opposite(splats[sides[0].first], splats[sides[1].first]))
       pairs->push_back({sides[0].first, sides[1].first});
   }

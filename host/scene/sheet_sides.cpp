@@ -1,5 +1,6 @@
 #include "host/scene/sheet_sides.h"
 #include "host/error.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <limits>
 #include <unordered_map>
@@ -35,10 +36,15 @@ std::size_t divide_sheets(const Scene& scene, std::vector<Splat>& splats, std::v
     if ((material.flags & MATERIAL_TWO_SIDED) != 0) return true;
     return !structure.empty() && has_no_side(structure[id[i]]) && may_be_sheet(material);
   };
+  const std::size_t divided =
+      parallel_sum(splats.size(), 1 << 16, std::size_t{0}, [&](std::size_t& count, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          count += is_two_sided(i) ? 1u : 0u;
+      });
+  if (divided == 0 && sides.empty()) return 0;
   std::vector<bool> two_sided(splats.size());
-  std::size_t divided = 0;
   for (std::size_t i = 0; i < splats.size(); ++i)
-    divided += two_sided[i] = is_two_sided(i);
+    two_sided[i] = is_two_sided(i);
   std::unordered_map<std::uint32_t, std::uint32_t> other_side;
   std::vector<bool> is_back(sides.empty() ? 0 : splats.size());
   for (const CoincidentSides& pair : sides) {

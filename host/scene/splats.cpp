@@ -4,6 +4,7 @@
 #include "host/image/srgb.h"
 #include "host/scene/field_albedo.h"
 #include "host/scene/sample_shape.h"
+#include "octree/parallel.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -14,6 +15,7 @@ namespace {
 
 /// What a cloud without colours and a material without albedo look like: a light grey, as plaster is.
 constexpr double default_albedo = 0.75;
+constexpr std::size_t grain = 1 << 14;
 
 std::uint32_t index_of(const Scene& scene, const std::string& name) {
   const auto at = std::find_if(scene.materials.begin(), scene.materials.end(),
@@ -30,12 +32,14 @@ void set_albedo(PointCloud& cloud, const MaterialSettings& material) {
   }
   const Eigen::Vector3f most = (Vector3d::Ones() - material.specular).cast<float>();
   if (!material.albedo && !cloud.colour.empty()) {
-    for (Eigen::Vector3f& c : cloud.colour)
-      for (int k = 0; k < 3; ++k) {
-        const float value = std::clamp(c[k], 0.0f, 1.0f);
-        c[k] = material.colour_space == ColourSpace::srgb ? srgb_to_linear(value) : value;
-        c[k] = std::min(c[k], most[k]);
-      }
+    parallel_ranges(cloud.colour.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        for (int k = 0; k < 3; ++k) {
+          float& c = cloud.colour[i][k];
+          const float value = std::clamp(c, 0.0f, 1.0f);
+          c = std::min(material.colour_space == ColourSpace::srgb ? srgb_to_linear(value) : value, most[k]);
+        }
+    });
     return;
   }
   const Vector3d albedo = material.albedo.value_or(Vector3d::Constant(default_albedo));
@@ -58,16 +62,18 @@ void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& po
   const bool turned = !settings.rotate_deg.isZero();
   const Eigen::Matrix3f rotation_f = pose.rotation.cast<float>();
   const auto scale = static_cast<float>(settings.scale);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    Vector3d p = cloud.position[i] * settings.scale;
-    if (turned) {
-      p = pose.rotation * p;
-      cloud.normal[i] = (rotation_f * cloud.normal[i]).normalized();
+  parallel_ranges(cloud.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vector3d p = cloud.position[i] * settings.scale;
+      if (turned) {
+        p = pose.rotation * p;
+        cloud.normal[i] = (rotation_f * cloud.normal[i]).normalized();
+      }
+      cloud.position[i] = p + settings.translate;
+      cloud.radius[i] = settings.radius ? static_cast<float>(*settings.radius) : cloud.radius[i] * scale;
+      cloud.area[i] *= scale * scale;
     }
-    cloud.position[i] = p + settings.translate;
-    cloud.radius[i] = settings.radius ? static_cast<float>(*settings.radius) : cloud.radius[i] * scale;
-    cloud.area[i] *= scale * scale;
-  }
+  });
 }
 
 /// What is known beyond the file, in the cloud's own coordinates: what the scene's camera and lamps see faces them.
@@ -210,17 +216,19 @@ WorldSplats load_splats(const Scene& scene) {
 std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame) {
   const PointCloud& cloud = splats.cloud;
   std::vector<Splat> result(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    Splat& s = result[i];
-    const Eigen::Vector3f p = frame.to_cube(cloud.position[i]);
-    std::copy_n(p.data(), 3, s.position);
-    std::copy_n(cloud.normal[i].data(), 3, s.normal);
-    std::copy_n(cloud.colour[i].data(), 3, s.colour);
-    // Divided in double: the side may be 1e18 or 1e-18, whose inverse squared leaves float.
-    s.radius = static_cast<float>(cloud.radius[i] / frame.side);
-    s.area = static_cast<float>(cloud.area[i] / frame.side / frame.side);
-    s.material = static_cast<float>(splats.material[i]);
-  }
+  parallel_ranges(cloud.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Splat& s = result[i];
+      const Eigen::Vector3f p = frame.to_cube(cloud.position[i]);
+      std::copy_n(p.data(), 3, s.position);
+      std::copy_n(cloud.normal[i].data(), 3, s.normal);
+      std::copy_n(cloud.colour[i].data(), 3, s.colour);
+      // Divided in double: the side may be 1e18 or 1e-18, whose inverse squared leaves float.
+      s.radius = static_cast<float>(cloud.radius[i] / frame.side);
+      s.area = static_cast<float>(cloud.area[i] / frame.side / frame.side);
+      s.material = static_cast<float>(splats.material[i]);
+    }
+  });
   return result;
 }
 

@@ -75,7 +75,11 @@ void phases(const PointCloud& from) {
   SiteSpacing spacing;
   phase("sites", [&] { sites = std::make_unique<Sites>(from.position); });
   phase("neighbours", [&] { sites->keep_neighbours(20); });
-  phase("spacings", [&] { spacing = site_spacing(*sites, from.normal); });
+  phase("spacings", [&] {
+    std::vector<float> distances = spacings_of(*sites);
+    rein_in_isolated(*sites, distances);
+    spacing = with_normals(*sites, from.normal, std::move(distances));
+  });
   phase("sizes", [&] {
     SplatSizes sizes = splat_sizes(*sites, from.normal, spacing, true, true);
     world.cloud.radius = std::move(sizes.radius);

@@ -95,7 +95,9 @@ void PointSink::finish_normals(CloudReport& report) {
     std::size_t here = 0;
     for (std::size_t i = begin; i < end; ++i) {
       Eigen::Vector3f& normal = cloud_.normal[i];
-      const bool usable = normal.allFinite() && std::isnormal(normal.stableNorm());
+      const float square = normal.squaredNorm(); // NaN, or out of these bounds: of lengths that need care
+      const bool usable =
+          (square > 1e-30f && square < 1e30f) || (normal.allFinite() && std::isnormal(normal.stableNorm()));
       if (!usable) normal.setZero();
       here += usable ? 1u : 0u;
     }

@@ -135,3 +135,21 @@ TEST_CASE("a parallel loop ends where its caller's question throws, and asks no 
   parallel_ranges(100, 1, body);
   CHECK(ranges == 100);
 }
+
+TEST_CASE("a parallel sum has the same bits for any number of threads, and meets every item") {
+  const std::size_t n = GENERATE(0u, 1u, 100u, 1001u);
+  const auto sum_of = [&](int count) {
+    const Threads threads(count);
+    return parallel_sum(n, 100, 0.0, [](double& sum, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        sum += 1.0 / static_cast<double>(i + 1);
+    });
+  };
+  double serial = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    serial += 1.0 / static_cast<double>(i + 1);
+  const double alone = sum_of(1);
+  CHECK(alone == Approx(serial).epsilon(1e-14)); // a thousand roundings
+  CHECK(sum_of(2) == alone);
+  CHECK(sum_of(5) == alone);
+}

@@ -19,7 +19,8 @@ struct Oriented {
 
 std::string orient(const Sites& sites, const OrientationEvidence& given, std::vector<Vector3f>& normals,
                    const std::vector<Structure>& structure = {}) {
-  const std::vector<float> spacing = site_spacing(sites, {}).spacing;
+  std::vector<float> spacing = spacings_of(sites);
+  rein_in_isolated(sites, spacing);
   const FreeSpace space(sites, spacing, 128);
   OrientationEvidence evidence = given;
   evidence.kind = recognise_kind(sites, spacing, normals, structure, space, {!given.stations.empty(), {}, false});

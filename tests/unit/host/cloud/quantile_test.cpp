@@ -30,3 +30,28 @@ TEST_CASE("a value at a rank is that of the sorted values", "[cloud]") {
   for (const std::size_t rank : {std::size_t{0}, n / 100, n / 2, n - 1 - n / 100, n - 1})
     CHECK(value_at_rank(n, rank, [&](std::size_t i) { return values[i]; }) == sorted[rank]);
 }
+
+TEST_CASE("bounds at ranks are those of each axis's sorted values", "[cloud]") {
+  const std::size_t n = GENERATE(std::size_t{100}, std::size_t{200'000});
+  std::mt19937_64 random(12);
+  std::vector<std::array<double, 3>> places(n);
+  for (auto& place : places)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      place[axis] = std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(axis) * 20 - 60);
+  const std::size_t low = n / 100, high = n - 1 - n / 200;
+  const auto bounds = bounds_at_ranks(n, low, high, [&](std::size_t i) { return places[i]; });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> sorted;
+    for (const auto& place : places)
+      sorted.push_back(place[axis]);
+    std::sort(sorted.begin(), sorted.end());
+    CHECK(bounds[0][axis] == sorted[low]);
+    CHECK(bounds[1][axis] == sorted[high]);
+  }
+}
+
+TEST_CASE("a median is the upper one of two middle values", "[cloud]") {
+  const std::vector<float> values = {4, 1, 3, 2};
+  CHECK(median(values) == 3.0f);
+  CHECK(median(values.size(), [&](std::size_t i) { return values[i]; }) == 3.0);
+}

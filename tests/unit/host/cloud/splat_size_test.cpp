@@ -15,7 +15,10 @@ namespace {
 
 PointCloud sized(PointCloud cloud) {
   const Sites sites(cloud.position);
-  SplatSizes sizes = splat_sizes(sites, cloud.normal, site_spacing(sites, cloud.normal), true, false);
+  std::vector<float> spacing = spacings_of(sites);
+  rein_in_isolated(sites, spacing);
+  SplatSizes sizes =
+      splat_sizes(sites, cloud.normal, with_normals(sites, cloud.normal, std::move(spacing)), true, false);
   cloud.radius = std::move(sizes.radius);
   cloud.area = std::move(sizes.area);
   return cloud;
