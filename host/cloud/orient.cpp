@@ -180,30 +180,34 @@ int side_of(const TreeShape& shape, double eyes, double space, double up, bool i
   return std::abs(vote) > clear_vote ? (vote < 0 ? -1 : 1) : 0;
 }
 
-/// What single places see: 1 mostly their front faces open space, -1 mostly their back does, 0 anything else.
-std::vector<int> votes_of_places(const Sites& sites, const FreeSpace& space, std::uint32_t step,
+/// What single places see: 1 mostly their front faces open space, -1 mostly their back does, 0 anything else. The
+/// inside of a closed patch (`closed`, a value a tree) may see a mouth; what an open one's other side sees says little.
+std::vector<int> votes_of_places(const Sites& sites, const SpanningForest& forest, const std::vector<char>& closed,
+                                 const FreeSpace& space, std::uint32_t step,
                                  const std::vector<Eigen::Vector3f>& normals) {
-  constexpr double shut = 0.3, open = 0.4; // shut: of the other side's openness, for a jar's inside sees its mouth
+  constexpr double open = 0.4, shut = 0.05, mouth = 0.3; // mouth: of the other side's openness
   std::vector<int> votes((sites.size() + step - 1) / step);
   parallel_ranges(votes.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto s = static_cast<std::uint32_t>(v * step);
       const Eigen::Vector3d n = normals[s].cast<double>();
       const double front = space.openness(sites.position(s), n), back = space.openness(sites.position(s), -n);
-      votes[v] = front > open && back < shut * front ? 1 : back > open && front < shut * back ? -1 : 0;
+      const double least = std::max(shut, closed[forest.tree[s]] ? mouth * std::max(front, back) : 0.0);
+      votes[v] = front > open && back < least ? 1 : back > open && front < least ? -1 : 0;
     }
   });
   return votes;
 }
 
 /// Islands that the chain of neighbours left on the wrong side, as on the terraces of voxels: turned where all places
-/// around that see open space see it at their backs. Returns how many sites were.
-std::size_t turn_islands(const Sites& sites, const FreeSpace& space, std::vector<Eigen::Vector3f>& normals) {
+/// around that see open space see it at their backs.
+void turn_islands(const Sites& sites, const SpanningForest& forest, const std::vector<char>& closed,
+                  const FreeSpace& space, std::vector<Eigen::Vector3f>& normals) {
   constexpr std::uint32_t most_votes = 200'000;
   constexpr unsigned jury = 12;
   const std::uint32_t step = (sites.size() + most_votes - 1) / most_votes;
-  const std::vector<int> votes = votes_of_places(sites, space, step, normals);
-  if (std::count(votes.begin(), votes.end(), -1) == 0) return 0;
+  const std::vector<int> votes = votes_of_places(sites, forest, closed, space, step, normals);
+  if (std::count(votes.begin(), votes.end(), -1) == 0) return;
   std::vector<Eigen::Vector3d> places;
   for (std::size_t v = 0; v < votes.size(); ++v)
     places.push_back(sites.position(static_cast<std::uint32_t>(v * step)));
@@ -228,7 +232,6 @@ std::size_t turn_islands(const Sites& sites, const FreeSpace& space, std::vector
   });
   for (std::uint32_t s = 0; s < sites.size(); ++s)
     if (turn[s]) normals[s] = -normals[s];
-  return static_cast<std::size_t>(std::count(turn.begin(), turn.end(), 1));
 }
 
 Orientation turn_patches(const Sites& sites, const OrientationEvidence& evidence, const FreeSpace& space,
@@ -273,7 +276,12 @@ Orientation turn_patches(const Sites& sites, const OrientationEvidence& evidence
       if (signs[t] != 0 ? signs[t] < 0 : must_flip(shapes[t])) normals[s] = -normals[s];
     }
   }
-  if (!inward && std::count(by_eyes.begin(), by_eyes.end(), 1) == 0) turn_islands(sites, space, normals);
+  if (!inward && std::count(by_eyes.begin(), by_eyes.end(), 1) == 0) {
+    std::vector<char> closed;
+    for (const TreeShape& shape : shapes)
+      closed.push_back(shape.openness() < open_surface);
+    turn_islands(sites, forest, closed, space, normals);
+  }
   Orientation result;
   result.doubt = static_cast<double>(in_doubt) / static_cast<double>(sites.size());
   result.how = by_eyes[largest] ? "towards the scene's camera and lights"
