@@ -74,11 +74,10 @@ void complete_body(PointCloud& cloud, const Sites& sites, std::vector<float>&& d
   if (!own_radii) cloud.radius = std::move(sizes.radius);
   if (!sampled) cloud.area = std::move(sizes.area);
   set_structure(cloud, sites, structure);
-  if (!structure.empty()) {
-    if (!own_radii && !sampled) limit_sizes(cloud, sites, spacing.spacing, structure, report.kind == CloudKind::sparse);
-    if (report.kind == CloudKind::foliage) // leaves are seen from both sides
-      std::replace(cloud.structure.begin(), cloud.structure.end(), Structure::surface, Structure::sheet);
-  }
+  if (cloud.triangle.empty() && !own_radii && !sampled)
+    limit_sizes(cloud, sites, spacing.spacing, structure, report.kind == CloudKind::sparse);
+  if (!signs_given && report.kind == CloudKind::foliage) // leaves are seen from both sides
+    std::replace(cloud.structure.begin(), cloud.structure.end(), Structure::surface, Structure::sheet);
   if (!cloud.triangle.empty() && has_doubled_faces(cloud)) {
     cloud.structure.assign(cloud.size(), Structure::sheet);
     report.notes.push_back(

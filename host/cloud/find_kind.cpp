@@ -28,6 +28,7 @@ KindHints hints_for(const Sites& sites, const PointCloud& cloud, const CompleteO
                     const CloudReport& report) {
   KindHints hints;
   hints.up = options.up ? options.up : report.up;
+  hints.usual = report.usual_kind;
   hints.signs_given = signs_given;
   hints.has_stations =
       !cloud.stations.empty() && std::any_of(cloud.stations.begin(), cloud.stations.end(),

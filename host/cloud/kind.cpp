@@ -257,6 +257,7 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spac
                               const FreeSpace& space, const KindHints& hints) {
   if (hints.has_stations)
     return {CloudKind::station, "positions of scanners are known", {}, hints.up.value_or(Eigen::Vector3d::UnitZ())};
+  if (hints.usual) return {*hints.usual, "files of this format hold such", {}, hints.up};
   if (sites.size() < 100) return {CloudKind::model, "few points", {}, hints.up};
   const Eigen::Vector3d origin = sites.to_local(Eigen::Vector3d::Zero());
   if (const SensorView view = sensor_view(sites, origin);

@@ -82,7 +82,8 @@ struct CloudReport {
   std::string normals_from; ///< "file", "file, flipped", "faces", "estimated (…)"
   std::string radii_from;   ///< "file", "estimated (…)"
   std::string areas_from;
-  std::optional<Eigen::Vector3d> up; ///< unit; what the format defines (LAS, PTX, E57: z), or the cloud's kind shows
+  std::optional<Eigen::Vector3d> up;   ///< unit; what the format defines (LAS, PTX, E57: z), or the cloud's kind shows
+  std::optional<CloudKind> usual_kind; ///< what files of this format hold, whatever it looks like
   /// Unit; how programs that write this format count upwards where they do not level their scenes (Gaussians: -y).
   std::optional<Eigen::Vector3d> usual_up;
   std::optional<Placement> placement; ///< degrees of longitude and latitude; PointCloud has them as the file does

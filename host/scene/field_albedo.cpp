@@ -14,6 +14,7 @@ constexpr double low_share = 0.01, high_share = 0.99; // a few extremes don't ta
 constexpr std::size_t most_samples = 1000000;
 constexpr double middle = 0.5;
 constexpr double least_range = 0.1; // of the quantiles' range
+constexpr double darkest = 0.3;     // below the least value, in ranges: 0.23 in sRGB, an albedo of 0.04, as of asphalt
 
 using Fields = std::vector<const Field*>;
 
@@ -102,6 +103,7 @@ bool colours_from_intensity(PointCloud& cloud, CloudReport& report) {
       // Lasers measure a few bright signs and much that is dark: half of the points are at least middle grey.
       range.high = std::clamp(range.low + (median - range.low) / middle,
                               range.low + least_range * (range.high - range.low), range.high);
+      range.low -= darkest * (range.high - range.low); // no surface takes all light
       fill_colours({field}, range, cloud);
       report.notes.push_back("the file has no colours: they are grey by its field " + describe({field}, range) +
                              "; a material chooses by albedo = { field = \"" + printable(field->info.name) +

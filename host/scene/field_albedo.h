@@ -12,7 +12,7 @@ void colours_from_fields(const MaterialSettings& material, const std::string& fi
                          CloudReport& report);
 
 /// The same in grey from the intensity of a file that has no colours, if it has one that is not the same everywhere;
-/// white is at most twice the median above black, so that no picture is nearly black. True if it has.
+/// half of the points are at least middle grey, and none is black. True if it has.
 bool colours_from_intensity(PointCloud& cloud, CloudReport& report);
 
 } // namespace pointgi

@@ -242,6 +242,7 @@ PcdHeader read_header(const InputFile& file) {
 PointCloud read_pcd(const std::string& path, const ReadRequest& request, CloudReport& report) {
   const InputFile file(path);
   const PcdHeader header = read_header(file);
+  report.usual_up = Eigen::Vector3d::UnitZ(); // robots' maps; depth cameras' frames are known by other signs
   report.format = std::string("PCD ") + name_of(header.data);
   if (header.height > 1) report.format += fmt::format(", {} x {}", header.width, header.height);
   report.warnings.insert(report.warnings.end(), header.warnings.begin(), header.warnings.end());

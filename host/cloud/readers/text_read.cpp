@@ -174,7 +174,10 @@ PointCloud read_text(const std::string& path, const ReadRequest& request, CloudR
   const char* end = bytes.data.get() + bytes.size;
   TextLayout layout = find_text_layout(begin, end, 1, path);
   report.format = layout.colmap ? "points3D.txt of COLMAP" : has_extension(path, ".pts") ? "PTS" : "text";
-  if (layout.colmap) report.usual_up = -Eigen::Vector3d::UnitY(); // as its cameras count
+  if (layout.colmap) {
+    report.usual_kind = CloudKind::sparse;
+    report.usual_up = -Eigen::Vector3d::UnitY(); // as its cameras count
+  }
   report.notes.push_back(columns_note(layout));
   std::size_t first_line = 1;
   if (layout.header_is_data) {

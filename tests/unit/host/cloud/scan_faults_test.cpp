@@ -210,6 +210,27 @@ TEST_CASE("cables stay thin", "[cloud][complete]") {
   CHECK(std::all_of(cloud.normal.begin(), cloud.normal.end(), [](const Vector3f& n) { return n.z() > 0; }));
 }
 
+TEST_CASE("no disc is wide because its point is alone, with normals or without", "[cloud][complete]") {
+  // A dense floor, and beyond its edge one point an object, farther and farther apart.
+  PointCloud cloud;
+  std::mt19937_64 random(12);
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j)
+      cloud.position.emplace_back(0.1 * (i + uniform(random, 0, 0.5)), 0.1 * (j + uniform(random, 0, 0.5)), 0.0);
+  for (int i = 0; i < 40; ++i)
+    cloud.position.emplace_back(6 + 0.5 * i + 0.05 * i * i, uniform(random, 0, 6), uniform(random, 0, 3));
+  CompleteOptions options;
+  options.strays = StrayPolicy::keep;
+  const auto widest = [&](PointCloud scan) {
+    CloudReport report;
+    complete_cloud(scan, options, report);
+    return *std::max_element(scan.radius.begin(), scan.radius.end());
+  };
+  CHECK(widest(cloud) < 16 * 0.11f); // of the median spacing, about 0.1
+  cloud.normal.assign(cloud.size(), Vector3f::UnitZ());
+  CHECK(widest(cloud) < 16 * 0.11f);
+}
+
 TEST_CASE("a room faces its camera, and is known by its walls where there is none", "[cloud][complete]") {
   PointCloud room;
   std::mt19937_64 random(9);

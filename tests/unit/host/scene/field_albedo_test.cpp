@@ -86,15 +86,15 @@ TEST_CASE("field albedo: intensity stands in where a file has no colours", "[fie
   const SceneFolder folder;
   folder.write("cloud.ply", grid_ply(intensity, hundreds));
   const WorldSplats grey = splats_of(folder, "");
-  CHECK(grey.cloud.colour[0].x() == 0.0f);
-  CHECK(grey.cloud.colour[200].x() == Approx(srgb_to_linear(0.5f)).margin(0.01)); // 1 % of contrast
+  CHECK(grey.cloud.colour[0].x() == Approx(srgb_to_linear(0.3f / 1.3f)).margin(0.01));   // as black as asphalt
+  CHECK(grey.cloud.colour[200].x() == Approx(srgb_to_linear(0.8f / 1.3f)).margin(0.01)); // 1 % of contrast
   CHECK(grey.cloud.colour[399].x() == 1.0f);
   REQUIRE(grey.reports[0].notes.size() == 1);
   CHECK_THAT(grey.reports[0].notes[0],
              Contains("the file has no colours: they are grey by its field scalar_Intensity"));
   // Half of the points are middle grey or lighter, however bright a few are; one value for all tells nothing.
   folder.write("cloud.ply", grid_ply(intensity, [](int i) { return std::to_string(i < 360 ? i : 2000); }));
-  CHECK(splats_of(folder, "").cloud.colour[200].x() == Approx(srgb_to_linear(0.5f)).margin(0.01));
+  CHECK(splats_of(folder, "").cloud.colour[200].x() == Approx(srgb_to_linear(0.8f / 1.3f)).margin(0.01));
   folder.write("cloud.ply", grid_ply(intensity, [](int) { return "0"; }));
   CHECK(splats_of(folder, "").reports[0].notes.empty());
   folder.write("cloud.ply", grid_ply(intensity, hundreds));
