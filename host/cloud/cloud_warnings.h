@@ -5,11 +5,11 @@
 
 namespace pointgi {
 
-/// Single places and lines: something can be shown. `points`: how many there are at the sites.
+/// Warns of clouds whose points all lie at one place or on one line. `points`: how many there are at the sites.
 void warn_of_degenerate(const Sites& sites, std::size_t points, CloudReport& report);
 
-/// Normals that oppose each other between neighbours, `opposite`: their share; unless the cloud is foliage.
-/// `signs_given`: by the file.
+/// Warns where many neighbours' normals oppose each other; not of foliage, where they are meant to. `opposite`: their
+/// share. `signs_given`: the normals are the file's own.
 void warn_of_opposite(double opposite, bool signs_given, CloudReport& report);
 
 } // namespace pointgi

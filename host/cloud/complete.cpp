@@ -75,7 +75,7 @@ void complete_body(PointCloud& cloud, const Sites& sites, std::vector<float>&& d
   if (!sampled) cloud.area = std::move(sizes.area);
   set_structure(cloud, sites, structure);
   if (cloud.triangle.empty() && !own_radii && !sampled)
-    limit_sizes(cloud, sites, spacing.spacing, structure, report.kind == CloudKind::sparse);
+    limit_sizes(cloud, sites, spacing, structure, report.kind == CloudKind::sparse);
   if (!signs_given && report.kind == CloudKind::foliage) // leaves are seen from both sides
     std::replace(cloud.structure.begin(), cloud.structure.end(), Structure::surface, Structure::sheet);
   if (!cloud.triangle.empty() && has_doubled_faces(cloud)) {
@@ -114,13 +114,14 @@ std::vector<T> without(const std::vector<T>& values, const std::vector<char>& st
   return kept;
 }
 
-/// The points between them are completed on their own; then each stray gets the normal (where it has none) and the disc
-/// of the nearest of them.
+/// The points between them are completed on their own; then each stray gets the normal and the disc of the nearest of
+/// them.
 void complete_around_strays(PointCloud& cloud, const std::vector<char>& strays, const CompleteOptions& options,
                             CloudReport& report) {
   PointCloud body;
   body.position = without(cloud.position, strays);
   body.normal = without(cloud.normal, strays);
+  body.normals_unsigned = cloud.normals_unsigned;
   body.radius = without(cloud.radius, strays);
   body.area = without(cloud.area, strays);
   body.station = without(cloud.station, strays);

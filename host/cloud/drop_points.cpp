@@ -39,7 +39,7 @@ std::size_t drop_unusable_points(PointCloud& cloud, const CompleteOptions& optio
     if (!cloud.opacity.empty() && !(cloud.opacity[i] >= least_opacity)) return false;
     return !use_radius || positive(cloud.radius[i]);
   };
-  // Faces may name points that there are not; without faces nothing is to be done for most clouds.
+  // Most clouds need no copy. Faces may name points that do not exist, which keep_points() removes.
   if (cloud.triangle.empty() && count_unwanted(cloud.size(), usable) == 0) return 0;
   return keep_points(cloud, usable);
 }

@@ -19,8 +19,11 @@ std::vector<Eigen::Vector3f> normals_of_sites(const Sites& sites, const PointClo
   std::vector<Eigen::Vector3f> normals = estimate_normals(sites, &structure);
   parallel_ranges(cloud.normal.empty() ? 0 : sites.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const Eigen::Vector3f& given = cloud.normal[*sites.points(static_cast<std::uint32_t>(s)).begin()];
-      if (!given.isZero(0)) normals[s] = given;
+      for (const std::uint32_t point : sites.points(static_cast<std::uint32_t>(s)))
+        if (const Eigen::Vector3f& given = cloud.normal[point]; !given.isZero(0)) {
+          normals[s] = given;
+          break;
+        }
     }
   });
   const FreeSpace space(sites, spacing, free_space_side);

@@ -50,23 +50,24 @@ Extent extent_of(const Sites& sites, const std::vector<Structure>& structure) {
 }
 
 /// How much normals face along an axis: the means of |n.axis| and of n.axis.
-struct Facing {
+struct AxisMeans {
   double either_way = 0, along = 0;
 
-  Facing& operator+=(const Facing& other) {
+  AxisMeans& operator+=(const AxisMeans& other) {
     either_way += other.either_way;
     along += other.along;
     return *this;
   }
 };
 
-Facing mean_facing(const std::vector<Eigen::Vector3f>& normals, int axis) {
-  Facing mean = parallel_sum(normals.size(), grain, Facing(), [&](Facing& sum, std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const auto along = static_cast<double>(normals[s][axis]);
-      sum += {std::abs(along), along};
-    }
-  });
+AxisMeans mean_facing(const std::vector<Eigen::Vector3f>& normals, int axis) {
+  AxisMeans mean =
+      parallel_sum(normals.size(), grain, AxisMeans(), [&](AxisMeans& sum, std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+          const auto along = static_cast<double>(normals[s][axis]);
+          sum += {std::abs(along), along};
+        }
+      });
   mean.either_way /= static_cast<double>(normals.size());
   mean.along /= static_cast<double>(normals.size());
   return mean;
@@ -103,7 +104,9 @@ std::vector<double> residuals_of(const Sites& sites, const std::vector<std::uint
 /// more than a million sites in a regular sample of the columns.
 Layering layering_of(const Sites& sites, const std::vector<Structure>& structure, const Extent& extent, int axis) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  const double area = std::max(extent.size()[a] * extent.size()[b], 1e-300);
+  const double longer = std::max(extent.size()[a], extent.size()[b]);
+  if (std::min(extent.size()[a], extent.size()[b]) <= 1e-6 * longer) return {}; // no grid has cells across a line
+  const double area = extent.size()[a] * extent.size()[b];
   const double cell = std::sqrt(16.0 * area / sites.size());
   const auto columns = static_cast<std::size_t>(extent.size()[a] / cell) + 1;
   const auto rows = static_cast<std::size_t>(extent.size()[b] / cell) + 1;
@@ -157,7 +160,7 @@ std::optional<HeightField> height_field(const Sites& sites, const Extent& extent
   if (hints.up) hints.up->cwiseAbs().maxCoeff(&thin);
   const double middle = size.sum() - size.minCoeff() - size.maxCoeff();
   if (size[thin] > terrain_thickness * middle) return {};
-  const Facing facing = mean_facing(normals, thin);
+  const AxisMeans facing = mean_facing(normals, thin);
   if (facing.either_way < terrain_facing) return {};
   if (hints.signs_given && std::abs(facing.along) < terrain_facing) return {}; // a wall scanned on both sides is none
   const Layering layers = layering_of(sites, structure, extent, thin);
@@ -276,7 +279,7 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spac
   const Extent extent = extent_of(sites, structure);
   if (const auto field = height_field(sites, extent, normals, structure, hints))
     return {CloudKind::terrain, "one height at " + percent(field->one_layer, 0) + " of the places", {}, field->up};
-  if (const double step = unevenness(spacing); step > uneven && !hints.up) {
+  if (const double step = unevenness(spacing); step > uneven && !hints.up && !hints.signs_given) {
     char text[80];
     std::snprintf(text, sizeof text, "the spacing of its points differs by a factor of %.1f", step);
     return {CloudKind::sparse, text, {}, hints.up};

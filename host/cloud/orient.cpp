@@ -181,8 +181,9 @@ int side_of(const TreeShape& shape, double eyes, double space, double up, bool i
 }
 
 /// What single places see: 1 mostly their front faces open space, -1 mostly their back does, 0 anything else. The
-/// inside of a closed patch (`closed`, a value a tree) may see a mouth; what an open one's other side sees says little.
-std::vector<int> votes_of_places(const Sites& sites, const SpanningForest& forest, const std::vector<char>& closed,
+/// inside of a closed patch (`goes_round`, a value a tree) may see a mouth; what an open one's other side sees says
+/// little.
+std::vector<int> votes_of_places(const Sites& sites, const SpanningForest& forest, const std::vector<char>& goes_round,
                                  const FreeSpace& space, std::uint32_t step,
                                  const std::vector<Eigen::Vector3f>& normals) {
   constexpr double open = 0.4, shut = 0.05, mouth = 0.3; // mouth: of the other side's openness
@@ -192,8 +193,8 @@ std::vector<int> votes_of_places(const Sites& sites, const SpanningForest& fores
       const auto s = static_cast<std::uint32_t>(v * step);
       const Eigen::Vector3d n = normals[s].cast<double>();
       const double front = space.openness(sites.position(s), n), back = space.openness(sites.position(s), -n);
-      const double least = std::max(shut, closed[forest.tree[s]] ? mouth * std::max(front, back) : 0.0);
-      votes[v] = front > open && back < least ? 1 : back > open && front < least ? -1 : 0;
+      const double most_shut = std::max(shut, goes_round[forest.tree[s]] ? mouth * std::max(front, back) : 0.0);
+      votes[v] = front > open && back < most_shut ? 1 : back > open && front < most_shut ? -1 : 0;
     }
   });
   return votes;
@@ -201,12 +202,12 @@ std::vector<int> votes_of_places(const Sites& sites, const SpanningForest& fores
 
 /// Islands that the chain of neighbours left on the wrong side, as on the terraces of voxels: turned where all places
 /// around that see open space see it at their backs.
-void turn_islands(const Sites& sites, const SpanningForest& forest, const std::vector<char>& closed,
+void turn_islands(const Sites& sites, const SpanningForest& forest, const std::vector<char>& goes_round,
                   const FreeSpace& space, std::vector<Eigen::Vector3f>& normals) {
   constexpr std::uint32_t most_votes = 200'000;
   constexpr unsigned jury = 12;
   const std::uint32_t step = (sites.size() + most_votes - 1) / most_votes;
-  const std::vector<int> votes = votes_of_places(sites, forest, closed, space, step, normals);
+  const std::vector<int> votes = votes_of_places(sites, forest, goes_round, space, step, normals);
   if (std::count(votes.begin(), votes.end(), -1) == 0) return;
   std::vector<Eigen::Vector3d> places;
   for (std::size_t v = 0; v < votes.size(); ++v)
@@ -277,10 +278,10 @@ Orientation turn_patches(const Sites& sites, const OrientationEvidence& evidence
     }
   }
   if (!inward && std::count(by_eyes.begin(), by_eyes.end(), 1) == 0) {
-    std::vector<char> closed;
+    std::vector<char> goes_round;
     for (const TreeShape& shape : shapes)
-      closed.push_back(shape.openness() < open_surface);
-    turn_islands(sites, forest, closed, space, normals);
+      goes_round.push_back(shape.openness() < open_surface);
+    turn_islands(sites, forest, goes_round, space, normals);
   }
   Orientation result;
   result.doubt = static_cast<double>(in_doubt) / static_cast<double>(sites.size());

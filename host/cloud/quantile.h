@@ -17,12 +17,13 @@ constexpr double quantile_margin = 5.0; // standard deviations of the sample's r
 /// Values between two that very likely enclose the one of a rank, and how many are below.
 struct Enclosed {
   double low, high;
-  std::size_t below = 0;
-  std::vector<double> values;
+  std::size_t below = 0, at_low = 0; ///< equal values, of flat floors and rounded numbers, are counted and not kept
+  std::vector<double> values;        ///< above `low`
 
   void add(double v) {
     below += v < low ? 1u : 0u;
-    if (v >= low && v <= high) values.push_back(v);
+    at_low += v == low ? 1u : 0u;
+    if (v > low && v <= high) values.push_back(v);
   }
 };
 
@@ -63,6 +64,7 @@ void enclose_values(std::size_t n, std::array<Enclosed, Ranks>& brackets, const 
   for (const auto& range : ranges)
     for (std::size_t r = 0; r < Ranks; ++r) {
       brackets[r].below += range[r].below;
+      brackets[r].at_low += range[r].at_low;
       brackets[r].values.insert(brackets[r].values.end(), range[r].values.begin(), range[r].values.end());
     }
 }
@@ -87,14 +89,16 @@ std::array<double, Ranks> values_at_ranks(std::size_t n, const std::array<std::s
     detail::enclose_values(n, brackets, value);
     for (std::size_t r = 0; r < Ranks; ++r) {
       detail::Enclosed& b = brackets[r];
-      done[r] = ranks[r] >= b.below && ranks[r] - b.below < b.values.size();
-      if (done[r]) found[r] = detail::nth_value(b.values, ranks[r] - b.below);
+      if (ranks[r] < b.below || ranks[r] - b.below >= b.at_low + b.values.size()) continue; // the sample led astray
+      const std::size_t rank = ranks[r] - b.below;
+      found[r] = rank < b.at_low ? b.low : detail::nth_value(b.values, rank - b.at_low);
+      done[r] = true;
     }
   }
   std::vector<double> all;
   for (std::size_t r = 0; r < Ranks; ++r) {
     if (done[r]) continue;
-    all.resize(n); // few, or the sample led astray
+    all.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       all[i] = static_cast<double>(value(i, r));
     found[r] = detail::nth_value(all, ranks[r]);

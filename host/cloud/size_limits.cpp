@@ -17,42 +17,58 @@ constexpr float most_spacings = 2.5f;
 constexpr float surely_right = 1.0f; // over its own
 // Radii over the cloud's median spacing: where nothing vouches for a surface, and where the last few points of a scan
 // are metres apart, one to an object.
-constexpr float most_medians = 2.0f, most_medians_of_surface = 16.0f;
+constexpr float most_medians = 2.0f, most_medians_alone = 16.0f;
 
-float largest_radius(const PointCloud& cloud, const Sites& sites, std::size_t site) {
+float largest_radius(const PointCloud& cloud, const Sites& sites, std::uint32_t site) {
   float largest = 0.0f;
-  for (const std::uint32_t point : sites.points(static_cast<std::uint32_t>(site)))
+  for (const std::uint32_t point : sites.points(site))
     largest = std::max(largest, cloud.radius[point]);
   return largest;
 }
 
+/// Whether three quarters of the neighbours lie near the site's tangent plane and face along its normal, either way.
+bool lies_on_a_surface(const Sites& sites, const std::vector<Eigen::Vector3f>& normal, std::uint32_t site,
+                       const Neighbour* near, unsigned count) {
+  constexpr float along = 0.7f;
+  constexpr double flat = 0.2; // height over the plane, over the distance
+  const Eigen::Vector3d own = normal[site].cast<double>();
+  unsigned on_it = 0;
+  for (unsigned j = 0; j < count; ++j) {
+    const Eigen::Vector3d way = sites.position(near[j].site) - sites.position(site);
+    on_it += std::abs(normal[site].dot(normal[near[j].site])) > along && std::abs(own.dot(way)) < flat * way.norm();
+  }
+  return 4 * on_it >= 3 * count;
+}
+
 } // namespace
 
-void limit_sizes(PointCloud& cloud, const Sites& sites, const std::vector<float>& spacing,
+void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spacing,
                  const std::vector<Structure>& structure, bool sparse) {
   const auto unit = static_cast<float>(sites.unit());
-  const auto usual = static_cast<float>(value_at_rank(spacing.size(), spacing.size() / 2,
-                                                      [&](std::size_t s) { return static_cast<double>(spacing[s]); }));
-  const float widest = most_medians * usual, widest_surface = most_medians_of_surface * usual;
+  const auto usual = static_cast<float>(median(sites.size(), [&](std::size_t s) { return spacing.spacing[s]; }));
+  const float widest = most_medians * usual, widest_alone = most_medians_alone * usual;
   parallel_ranges(sites.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, limit_neighbours> near;
     std::array<float, limit_neighbours> around;
-    for (std::size_t s = begin; s < end; ++s) {
+    for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
       const Structure own = structure.empty() ? Structure::surface : structure[s];
-      if (own == Structure::surface && !sparse &&
-          largest_radius(cloud, sites, s) <= std::min(surely_right * spacing[s], widest_surface) * unit)
-        continue;
-      const unsigned count = sites.nearest(static_cast<std::uint32_t>(s), limit_neighbours, near.data());
+      const float largest = largest_radius(cloud, sites, s) / unit;
+      const bool on_surface = own == Structure::surface && !sparse;
+      if (on_surface && largest <= std::min(surely_right * spacing.spacing[s], widest_alone)) continue;
+      const unsigned count = sites.nearest(s, limit_neighbours, near.data());
       if (count < 3) continue;
       for (unsigned j = 0; j < count; ++j)
-        around[j] = spacing[near[j].site];
+        around[j] = spacing.spacing[near[j].site];
       std::nth_element(around.begin(), around.begin() + count / 2, around.begin() + count);
       const float second = std::sqrt(near[1].distance2), third = std::sqrt(near[2].distance2);
-      const float most = own == Structure::line     ? std::min(second, widest_surface)
-                         : own == Structure::volume ? std::min(0.75f * third, widest)
-                         : sparse                   ? std::min({spacing[s], around[count / 2], widest})
-                                                    : std::min(most_spacings * around[count / 2], widest_surface);
-      for (const std::uint32_t point : sites.points(static_cast<std::uint32_t>(s))) {
+      float most = own == Structure::line     ? std::min(second, widest_alone)
+                   : own == Structure::volume ? std::min(0.75f * third, widest)
+                   : sparse                   ? std::min({spacing.spacing[s], around[count / 2], widest})
+                                              : most_spacings * around[count / 2];
+      if (on_surface && std::min(largest, most) > widest_alone &&
+          !lies_on_a_surface(sites, spacing.normal, s, near.data(), count))
+        most = widest_alone;
+      for (const std::uint32_t point : sites.points(s)) {
         if (cloud.radius[point] <= most * unit) continue;
         cloud.radius[point] = std::max(most * unit, std::numeric_limits<float>::min());
         const double disc = pi * static_cast<double>(cloud.radius[point]) * static_cast<double>(cloud.radius[point]);

@@ -23,8 +23,8 @@ constexpr double no_line = 0.01;     // middle variance over the largest
 
 constexpr float densest_suspicion = 1.5f; // of the median spacing around, along the curve: denser sites are no strays
 
-/// The median of a range of sites, most of which need no search where it is known; infinite where no spacing is over
-/// densest_suspicion times it.
+/// The median spacing of a range of sites; infinite where no spacing is above densest_suspicion times it, so that no
+/// site of the range needs a search.
 float median_if_uneven(const std::vector<float>& spacing, std::size_t begin, std::size_t end) {
   const auto first = spacing.begin() + static_cast<std::ptrdiff_t>(begin),
              past = spacing.begin() + static_cast<std::ptrdiff_t>(end);

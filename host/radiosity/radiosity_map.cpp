@@ -45,11 +45,13 @@ private:
   std::uint64_t rays_ = 0;
 };
 
-/// More than rooms and models ask for (8 M of 19k points, 16 M of 54k, 150 M of 440k at the default epsilon; rays grow
-/// as 1/epsilon); foliage would ask for thousands a point.
-std::uint64_t default_vmap_rays(std::size_t points, double epsilon) {
-  const double finer = std::max(1.0, RadiositySettings{}.epsilon / epsilon);
-  return static_cast<std::uint64_t>(finer * (1e7 + 300.0 * static_cast<double>(points)));
+/// More than rooms and models ask for at the default settings (8 M of 19k points, 16 M of 54k, 150 M of 440k); foliage
+/// would ask for thousands a point. Rays grow as the samples of a pair, and as 1/epsilon.
+std::uint64_t default_vmap_rays(std::size_t points, const RadiositySettings& settings) {
+  const RadiositySettings usual;
+  const double finer = std::max(1.0, usual.epsilon / settings.epsilon) *
+                       std::max(1.0, static_cast<double>(settings.vmap_samples) / usual.vmap_samples);
+  return static_cast<std::uint64_t>(std::min(1e18, finer * (1e7 + 400.0 * static_cast<double>(points))));
 }
 
 /// The tree over them, and their places in its order.
@@ -75,7 +77,7 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
   options.most_rays = settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays)
-                                         : default_vmap_rays(map.place.size(), settings.epsilon);
+                                         : default_vmap_rays(map.place.size(), settings);
   options.seed = scene.seed;
   options.thesis = settings.vmap == "thesis";
   const DeviceInfo& device = session.info();

@@ -14,7 +14,8 @@ constexpr double low_share = 0.01, high_share = 0.99; // a few extremes don't ta
 constexpr std::size_t most_samples = 1000000;
 constexpr double middle = 0.5;
 constexpr double least_range = 0.1; // of the quantiles' range
-constexpr double darkest = 0.3;     // below the least value, in ranges: 0.23 in sRGB, an albedo of 0.04, as of asphalt
+constexpr double darkest =
+    0.3; // black lies so many ranges below the least value: that becomes 0.23 in sRGB, the albedo 0.04 of asphalt
 
 using Fields = std::vector<const Field*>;
 
@@ -23,7 +24,7 @@ struct Range {
 };
 
 /// Of the values that are finite, of every so many: the quantiles, and the value in the middle.
-Range quantiles(const Fields& fields, double* median = nullptr) {
+Range quantiles(const Fields& fields, double* middle_value = nullptr) {
   std::vector<double> values;
   for (const Field* field : fields) {
     const std::size_t step = field->values.size() * fields.size() / most_samples + 1;
@@ -36,7 +37,7 @@ Range quantiles(const Fields& fields, double* median = nullptr) {
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
-  if (median != nullptr) *median = quantile(0.5);
+  if (middle_value != nullptr) *middle_value = quantile(0.5);
   const double low = quantile(low_share);
   return {low, quantile(high_share)};
 }
@@ -97,11 +98,11 @@ void colours_from_fields(const MaterialSettings& material, const std::string& fi
 bool colours_from_intensity(PointCloud& cloud, CloudReport& report) {
   for (const char* name : intensity_names())
     if (const Field* field = find_field(cloud.fields, name)) {
-      double median = 0.0;
-      Range range = quantiles({field}, &median);
+      double usual = 0.0;
+      Range range = quantiles({field}, &usual);
       if (!(range.high > range.low)) continue; // all alike: it tells nothing
       // Lasers measure a few bright signs and much that is dark: half of the points are at least middle grey.
-      range.high = std::clamp(range.low + (median - range.low) / middle,
+      range.high = std::clamp(range.low + (usual - range.low) / middle,
                               range.low + least_range * (range.high - range.low), range.high);
       range.low -= darkest * (range.high - range.low); // no surface takes all light
       fill_colours({field}, range, cloud);

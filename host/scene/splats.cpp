@@ -100,11 +100,10 @@ void place(CloudReport& report, const CloudPose& pose) {
 /// Where the material or the lack of colours asks for it.
 void take_colours_from_fields(PointCloud& cloud, const CloudSettings& settings, const MaterialSettings& material,
                               CloudReport& report) {
-  if (material.albedo_field)
-    colours_from_fields(material, settings.file, cloud, report);
+  if (material.albedo_field) colours_from_fields(material, settings.file, cloud, report);
+  // Meshes keep the intensity of their scans, which is no picture of the surface.
   else if (!material.albedo && cloud.colour.empty() && report.triangles == 0 && exchanges_light(material))
-    colours_from_intensity(cloud,
-                           report); // meshes keep the intensity of their scans, which is no picture of the surface
+    colours_from_intensity(cloud, report);
   cloud.fields = {};
 }
 

@@ -9,12 +9,12 @@ struct UpChoice {
   std::string reason;
 };
 
-/// `eye`: where the points were seen from, for a depth frame. Scans of stations and maps and foliage: z, against which
-/// gravity pulls. Terrain: its thin axis, on the side that it faces. Rooms: whichever of z and y more surface is
+/// `eye`: where the points were seen from, for a depth frame. Scans of stations and maps: z, against which gravity
+/// pulls. Terrain: its thin axis, on the side that it faces. Rooms: whichever of z and y more surface is
 /// across. Depth frames: whichever way more of the surface faces, floors and tables. Sparse points: whichever way more
-/// of them lie in a level layer at the bottom. Models: what they stand on, else the axis that they are symmetric about,
-/// else y. `usual`: what the file's format is used to, CloudReport::usual_up: models, foliage and sparse points have
-/// it, unless they stand on a broad flat foot.
+/// of them lie in a level layer at the bottom. Models and foliage: what they stand on, else the axis that they are
+/// symmetric about, else y. `usual`: what the file's format is used to, CloudReport::usual_up: sparse points have it,
+/// and models and foliage that do not stand on a broad flat foot.
 UpChoice find_up(const ViewPoints& points, CloudKind kind, const Vector3d& eye,
                  const std::optional<Vector3d>& usual = {});
 

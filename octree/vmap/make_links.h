@@ -27,8 +27,9 @@ struct LinkOptions {
   /// four neighbours share one (octree/vmap/point_shares.h). 0: one share for all points of a pair.
   unsigned point_samples = 128;
   /// Rays after which pairs that are far apart are no longer divided, but taken with the share that `samples` segments
-  /// find: the time of foliage, where nearly all pairs hide each other in part, would grow as the square of its points.
-  /// Decided between waves, so that a wave may go beyond by what its pairs ask once; not of point_shares. 0: no bound.
+  /// find, and dropped if all are blocked: the time of foliage, where nearly all pairs hide each other in part, would
+  /// grow as the square of its points. Decided between waves, so that a wave may go beyond by what its pairs ask once;
+  /// not of point_shares. 0: no bound.
   std::uint64_t most_rays = 0;
   std::size_t batch = 1u << 22; ///< segments asked at a time, about: bounds the memory, changes nothing else
 };

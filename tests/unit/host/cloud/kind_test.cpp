@@ -9,7 +9,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// Points of a rolling surface, or of it and a ceiling over it, half a side above.
+/// Points of a rolling surface, or of it and a ceiling over it, a fifth of a side above.
 RecognisedKind kind_of_hills(int side, bool ceiling) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> within(0.0, 1.0);

@@ -210,15 +210,68 @@ TEST_CASE("cables stay thin", "[cloud][complete]") {
   CHECK(std::all_of(cloud.normal.begin(), cloud.normal.end(), [](const Vector3f& n) { return n.z() > 0; }));
 }
 
+TEST_CASE("axes of Gaussians get sides, with strays shrunk as with strays left out", "[cloud][complete]") {
+  PointCloud ball;
+  std::mt19937_64 random(14);
+  std::normal_distribution<double> gauss;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d p = Vector3d(gauss(random), gauss(random), gauss(random)).normalized();
+    add(ball, p, i % 2 == 0 ? p : Vector3d(-p));
+  }
+  for (int i = 0; i < 20; ++i)
+    add(ball, 5 * Vector3d(gauss(random), gauss(random), gauss(random)), Vector3d::UnitX());
+  ball.normals_unsigned = true;
+  CompleteOptions options;
+  options.strays = StrayPolicy::shrink;
+  CloudReport report;
+  complete_cloud(ball, options, report);
+  std::size_t outwards = 0;
+  for (std::size_t i = 0; i < 3000; ++i)
+    outwards += ball.normal[i].cast<double>().dot(ball.position[i]) > 0;
+  CHECK(outwards == 3000);
+}
+
+TEST_CASE("ground seen from a tripod keeps its area, however far apart its outer points are", "[cloud][complete]") {
+  // Rings of a scanner 1.6 m above the ground: from 0.03 m apart at its feet to 4 m at 60 m.
+  PointCloud cloud;
+  for (double down = 1.0; down > 0.0267; down -= 0.0018)
+    for (int k = 0; k < 360; ++k) {
+      const double r = 1.6 / std::tan(down), angle = k * pi / 180;
+      cloud.position.emplace_back(r * std::cos(angle), r * std::sin(angle), 0.0);
+    }
+  CompleteOptions options;
+  options.strays = StrayPolicy::keep;
+  for (const bool given : {false, true}) {
+    PointCloud scan = cloud;
+    if (given) scan.normal.assign(scan.size(), Vector3f::UnitZ());
+    CloudReport report;
+    complete_cloud(scan, options, report);
+    CHECK(total(scan.area) == Approx(pi * 60 * 60).epsilon(0.1)); // its rim is half a ring wider or narrower
+  }
+}
+
+TEST_CASE("a closed surface with normals keeps its area, however unevenly it was scanned", "[cloud][complete]") {
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> gauss;
+  PointCloud ball;
+  while (ball.size() < 12000) { // 85 % of the points on a cap
+    const Vector3d p = Vector3d(gauss(random), gauss(random), gauss(random)).normalized();
+    if (p.z() > 0.7 || uniform(random, 0, 1) < 0.03) add(ball, p, p);
+  }
+  const CloudReport report = complete(ball);
+  CHECK(report.kind == CloudKind::model);
+  CHECK(total(ball.area) == Approx(4 * pi).epsilon(0.02));
+}
+
 TEST_CASE("no disc is wide because its point is alone, with normals or without", "[cloud][complete]") {
-  // A dense floor, and beyond its edge one point an object, farther and farther apart.
+  // A dense floor, and beyond its edge one point an object.
   PointCloud cloud;
   std::mt19937_64 random(12);
   for (int i = 0; i < 60; ++i)
     for (int j = 0; j < 60; ++j)
       cloud.position.emplace_back(0.1 * (i + uniform(random, 0, 0.5)), 0.1 * (j + uniform(random, 0, 0.5)), 0.0);
   for (int i = 0; i < 40; ++i)
-    cloud.position.emplace_back(6 + 0.5 * i + 0.05 * i * i, uniform(random, 0, 6), uniform(random, 0, 3));
+    cloud.position.emplace_back(6 + 0.3 * i, uniform(random, 0, 6), uniform(random, 0, 4));
   CompleteOptions options;
   options.strays = StrayPolicy::keep;
   const auto widest = [&](PointCloud scan) {

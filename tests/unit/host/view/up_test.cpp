@@ -52,7 +52,7 @@ TEST_CASE("what stands on a slab in a file with y downwards is turned round") {
   CHECK((up_of_model(upside_down(statue())) + Vector3d::UnitY()).norm() == 0.0);
 }
 
-TEST_CASE("files of Gaussians have y downwards, unless what they show stands on a broad flat foot") {
+TEST_CASE("what a format is used to is up for sparse points, and for models without a broad flat foot") {
   const std::optional<Vector3d> usual = Vector3d(-Vector3d::UnitY());
   const auto up_of = [&](const PointCloud& cloud, CloudKind kind) {
     return find_up(view_points(cloud, 0.005), kind, Vector3d::Zero(), usual).up;
