@@ -45,13 +45,14 @@ private:
   std::uint64_t rays_ = 0;
 };
 
-/// More than rooms and models ask for at the default settings (8 M of 19k points, 16 M of 54k, 150 M of 440k); foliage
-/// would ask for thousands a point. Rays grow as the samples of a pair, and as 1/epsilon.
+/// More than rooms and models ask for at the default settings (8 M of 19k points, 16 M of 54k, 245 M of 440k and a
+/// ground) and at coarser ones (66 M of the 440k at four times the epsilon); foliage would ask for thousands a point.
 std::uint64_t default_vmap_rays(std::size_t points, const RadiositySettings& settings) {
+  constexpr double least = 0.4; // near pairs remain, however coarse epsilon is
   const RadiositySettings usual;
-  const double finer = std::max(1.0, usual.epsilon / settings.epsilon) *
+  const double finer = std::max(least, usual.epsilon / settings.epsilon) *
                        std::max(1.0, static_cast<double>(settings.vmap_samples) / usual.vmap_samples);
-  return static_cast<std::uint64_t>(std::min(1e18, finer * (1e7 + 400.0 * static_cast<double>(points))));
+  return static_cast<std::uint64_t>(std::min(1e18, finer * (1e7 + 500.0 * static_cast<double>(points))));
 }
 
 /// The tree over them, and their places in its order.

@@ -1,5 +1,6 @@
 #include "host/scene/load_scene.h"
 #include "host/cloud/input_file.h"
+#include "host/scene/limits.h"
 #include "host/scene/load_sections.h"
 #include "host/scene/overrides.h"
 #include "host/scene/scene_document.h"
@@ -87,6 +88,7 @@ Scene scene_of(const SceneDocument& document) {
   scene.shapes = load_shapes(root, names);
   scene.lights = load_lights(root, scene.up, scene.warnings);
   load_environment(root, document.scene_file, scene);
+  if (document.bare) scene.radiosity.epsilon = limits::bare_epsilon;
   load_radiosity(root, scene.radiosity);
   load_caustics(root, scene.caustics);
   load_octree(root, scene.octree);

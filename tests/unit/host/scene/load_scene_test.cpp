@@ -1,3 +1,4 @@
+#include "host/scene/limits.h"
 #include "host/scene/load_scene.h"
 #include "tests/unit/host/scene/scene_files.h"
 #include <catch2/catch.hpp>
@@ -107,6 +108,7 @@ radiance = [0.1, 0.2, 0.3]
 method = "direct"
 order = 4
 vmap_samples = 16
+vmap_rays = 123456789012
 epsilon = 2e-2
 tolerance = 1e-4
 vmap = "thesis"
@@ -164,6 +166,7 @@ TEST_CASE("every key of the settings arrives", "[scene]") {
   CHECK(scene.radiosity.method == "direct");
   CHECK(scene.radiosity.order == 4);
   CHECK(scene.radiosity.vmap_samples == 16);
+  CHECK(scene.radiosity.vmap_rays == 123'456'789'012);
   CHECK(scene.radiosity.epsilon == 2e-2);
   CHECK(scene.radiosity.tolerance == 1e-4);
   CHECK(scene.radiosity.vmap == "thesis");
@@ -298,6 +301,8 @@ TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
   CHECK(scene.camera.fov_deg == 40);
   CHECK(scene.environment == Vector3d(0, 0, 0));
   CHECK(scene.radiosity.method == "fmm");
+  CHECK(scene.radiosity.epsilon == 5e-3);
+  CHECK_FALSE(scene.radiosity.vmap_rays.has_value());
   CHECK(scene.radiosity.vmap == "fractions");
   CHECK(scene.radiosity.direct_light == "shadow_rays");
   CHECK_FALSE(scene.radiosity.place.has_value());
@@ -306,6 +311,13 @@ TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
   CHECK_FALSE(scene.caustics.indirect);
   CHECK_FALSE(scene.caustics.place.has_value());
   CHECK(scene.warnings.empty());
+}
+
+TEST_CASE("a bare cloud has the coarser epsilon of a first picture, unless told otherwise", "[scene]") {
+  const SceneFolder folder;
+  const std::string cloud = folder.write("cloud.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  CHECK(load_bare_cloud(cloud).radiosity.epsilon == limits::bare_epsilon);
+  CHECK(load_bare_cloud(cloud, {"radiosity.epsilon=5e-3"}).radiosity.epsilon == 5e-3);
 }
 
 TEST_CASE("the ends of every range are allowed", "[scene]") {
