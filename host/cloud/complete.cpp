@@ -74,8 +74,7 @@ void complete_body(PointCloud& cloud, const Sites& sites, std::vector<float>&& d
   if (!own_radii) cloud.radius = std::move(sizes.radius);
   if (!sampled) cloud.area = std::move(sizes.area);
   set_structure(cloud, sites, structure);
-  if (cloud.triangle.empty() && !own_radii && !sampled)
-    limit_sizes(cloud, sites, spacing, structure, report.kind == CloudKind::sparse);
+  if (cloud.triangle.empty() && !own_radii && !sampled) limit_sizes(cloud, sites, spacing, structure, report.kind);
   if (!signs_given && report.kind == CloudKind::foliage) // leaves are seen from both sides
     std::replace(cloud.structure.begin(), cloud.structure.end(), Structure::surface, Structure::sheet);
   if (!cloud.triangle.empty() && has_doubled_faces(cloud)) {

@@ -22,12 +22,30 @@ std::vector<Eigen::Vector3f> mean_normals(const Sites& sites, const std::vector<
   return means;
 }
 
+/// Whether x and y are hundreds of kilometres east and north of somewhere and z is a height: no model lies so far from
+/// its origin for its size.
+bool lies_on_a_map_grid(const PointCloud& cloud) {
+  constexpr double least = 1e4, far = 1e5, highest = 1e4, sizes_off = 5.0;
+  constexpr std::size_t looked_at = 1000;
+  Eigen::Vector3d low = cloud.position[0], high = low;
+  for (std::size_t i = 0; i < cloud.size(); i += cloud.size() / looked_at + 1)
+    low = low.cwiseMin(cloud.position[i]), high = high.cwiseMax(cloud.position[i]);
+  const Eigen::Vector3d size = high - low, middle = ((low + high) / 2).cwiseAbs();
+  const double nearer = std::min(middle.x(), middle.y()), farther = std::max(middle.x(), middle.y());
+  return nearer > least && farther > far && middle.z() < std::min(highest, 0.1 * nearer) &&
+         nearer > sizes_off * size.maxCoeff();
+}
+
 } // namespace
 
 KindHints hints_for(const Sites& sites, const PointCloud& cloud, const CompleteOptions& options, bool signs_given,
                     const CloudReport& report) {
   KindHints hints;
   hints.up = options.up ? options.up : report.up;
+  if (report.up)
+    hints.level_by = "the format knows which way is up";
+  else if (!hints.up && lies_on_a_map_grid(cloud))
+    hints.level_by = "its coordinates are those of a map", hints.up = Eigen::Vector3d::UnitZ();
   hints.usual = report.usual_kind;
   hints.signs_given = signs_given;
   hints.has_stations =

@@ -279,7 +279,7 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spac
   const Extent extent = extent_of(sites, structure);
   if (const auto field = height_field(sites, extent, normals, structure, hints))
     return {CloudKind::terrain, "one height at " + percent(field->one_layer, 0) + " of the places", {}, field->up};
-  if (const double step = unevenness(spacing); step > uneven && !hints.up && !hints.signs_given) {
+  if (const double step = unevenness(spacing); step > uneven && hints.level_by == nullptr && !hints.signs_given) {
     char text[80];
     std::snprintf(text, sizeof text, "the spacing of its points differs by a factor of %.1f", step);
     return {CloudKind::sparse, text, {}, hints.up};
@@ -302,8 +302,8 @@ RecognisedKind recognise_kind(const Sites& sites, const std::vector<float>& spac
             percent(inside, 0) + " of the points have something in front of both their sides",
             {},
             hints.up};
-  if (hints.up) return {CloudKind::map, "the format knows which way is up", {}, hints.up};
-  return {CloudKind::model, "nothing speaks for another kind", {}, {}};
+  if (hints.level_by != nullptr) return {CloudKind::map, hints.level_by, {}, hints.up};
+  return {CloudKind::model, "nothing speaks for another kind", {}, hints.up};
 }
 
 } // namespace pointgi

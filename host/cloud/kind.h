@@ -16,6 +16,7 @@ struct RecognisedKind {
 struct KindHints {
   bool has_stations = false;         ///< positions of scanners are given, and the points lie around them
   std::optional<Eigen::Vector3d> up; ///< unit; as the format or the user has it
+  const char* level_by = nullptr;    ///< a clause: what shows that `up` is against gravity; null: nothing does
   std::optional<CloudKind> usual;    ///< CloudReport::usual_kind
   bool signs_given = false;          ///< normals have sides
 };

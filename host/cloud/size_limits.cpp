@@ -43,7 +43,8 @@ bool lies_on_a_surface(const Sites& sites, const std::vector<Eigen::Vector3f>& n
 } // namespace
 
 void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spacing,
-                 const std::vector<Structure>& structure, bool sparse) {
+                 const std::vector<Structure>& structure, CloudKind kind) {
+  const bool sparse = kind == CloudKind::sparse, foliage = kind == CloudKind::foliage;
   const auto unit = static_cast<float>(sites.unit());
   const auto usual = static_cast<float>(median(sites.size(), [&](std::size_t s) { return spacing.spacing[s]; }));
   const float widest = most_medians * usual, widest_alone = most_medians_alone * usual;
@@ -53,7 +54,7 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spaci
     for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
       const Structure own = structure.empty() ? Structure::surface : structure[s];
       const float largest = largest_radius(cloud, sites, s) / unit;
-      const bool on_surface = own == Structure::surface && !sparse;
+      const bool on_surface = own == Structure::surface && !sparse && !foliage;
       if (on_surface && largest <= std::min(surely_right * spacing.spacing[s], widest_alone)) continue;
       const unsigned count = sites.nearest(s, limit_neighbours, near.data());
       if (count < 3) continue;
@@ -64,6 +65,7 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spaci
       float most = own == Structure::line     ? std::min(second, widest_alone)
                    : own == Structure::volume ? std::min(0.75f * third, widest)
                    : sparse                   ? std::min({spacing.spacing[s], around[count / 2], widest})
+                   : foliage                  ? std::min(most_spacings * around[count / 2], widest)
                                               : most_spacings * around[count / 2];
       if (on_surface && std::min(largest, most) > widest_alone &&
           !lies_on_a_surface(sites, spacing.normal, s, near.data(), count))

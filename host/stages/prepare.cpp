@@ -35,8 +35,8 @@ void log_reports(const Scene& scene, const WorldSplats& splats) {
 /// What the user left open is chosen so that the picture is worth looking at.
 void choose_view(Scene& scene, WorldSplats& splats, bool bare) {
   const bool unlit = bare && scene.lights.empty() && scene.sky == nullptr && scene.environment.isZero();
-  if (scene.camera.chosen && !unlit && !scene.ground) return;
-  const ChosenView view = scene.camera.chosen ? given_view(scene, splats) : choose_camera(scene, splats);
+  if (scene.camera.chosen && !bare && !scene.ground) return;
+  const ChosenView view = scene.camera.chosen ? given_view(scene, splats, bare) : choose_camera(scene, splats);
   if (!view.sentence.empty()) log_info("{}", view.sentence);
   if (unlit)
     for (const std::string& sentence : choose_lights(scene, splats, view))

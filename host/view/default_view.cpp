@@ -165,41 +165,64 @@ std::string look(Scene& scene, const WorldSplats& splats, const ViewPoints& poin
   return view.is_open ? "seen from the side that most points face" : "seen from the front";
 }
 
-ChosenView recognise(const WorldSplats& splats, const ViewPoints& points) {
-  ChosenView view;
-  view.kind = kind_of(splats, points);
-  return view;
+bool is_indoors(const ChosenView& view, const ViewPoints& points) {
+  return (view.kind == CloudKind::room || view.kind == CloudKind::station) && has_ceiling(points, view.up);
+}
+
+/// Of what is open backs would be seen, and they are black.
+void see_through_backs_of_open(Scene& scene, const ChosenView& view, const ViewPoints& points) {
+  const bool is_open = view.kind != CloudKind::model || points.mean_normal.norm() > 0.1;
+  if (!scene.camera.backfaces && is_open) scene.camera.backfaces = Backfaces::see_through;
+}
+
+/// So many digits that a step is less than a ten-thousandth of the way from one to the other, and no more.
+std::string place_text(const Vector3d& place, const Vector3d& other) {
+  const double ratio = place.cwiseAbs().maxCoeff() / std::max((place - other).norm(), 1e-300);
+  const int digits = std::clamp(5 + static_cast<int>(std::ceil(std::log10(std::max(ratio, 1.0)))), 6, 17);
+  return fmt::format("[{:.{}g}, {:.{}g}, {:.{}g}]", place.x(), digits, place.y(), digits, place.z(), digits);
+}
+
+std::string sentence_of(const char* who, const Scene& scene, const ChosenView& view, const UpChoice& up,
+                        const std::string& shown) {
+  const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
+  return fmt::format("camera {}: {}, {}{}{} (position = {}, look_at = {}, fov_deg = {:.4g}){}", who, name_of(view.kind),
+                     name_of_up(up), shown.empty() ? "" : ", ", shown, place_text(p, t), place_text(t, p),
+                     scene.camera.fov_deg,
+                     scene.camera.backfaces == Backfaces::see_through ? "; backs of surfaces are seen through" : "");
 }
 
 } // namespace
 
 ChosenView choose_camera(Scene& scene, const WorldSplats& splats) {
   ViewPoints points = view_points(splats.cloud, cut_of(CloudKind::model));
-  ChosenView view = recognise(splats, points);
+  ChosenView view;
+  view.kind = kind_of(splats, points);
   if (cut_of(view.kind) != cut_of(CloudKind::model)) points = view_points(splats.cloud, cut_of(view.kind));
   const UpChoice up = up_for(scene, splats, points, view.kind);
   view.up = up.up;
-  const bool is_scan = view.kind == CloudKind::room || view.kind == CloudKind::station;
-  view.is_closed_room = is_scan && has_ceiling(points, view.up);
-  // Of what is open backs would be seen, and they are black.
-  const bool is_open = is_scan || view.kind != CloudKind::model || points.mean_normal.norm() > 0.1;
-  if (!scene.camera.backfaces && is_open) scene.camera.backfaces = Backfaces::see_through;
+  view.is_closed_room = is_indoors(view, points);
+  see_through_backs_of_open(scene, view, points);
   const std::string shown = look(scene, splats, points, view);
-  const Vector3d &p = scene.camera.position, &t = scene.camera.look_at;
-  view.sentence = fmt::format(
-      "camera chosen: {}, {}, {} (position = [{:.6g}, {:.6g}, {:.6g}], look_at = [{:.6g}, {:.6g}, {:.6g}], fov_deg = "
-      "{:.4g}){}",
-      name_of(view.kind), name_of_up(up), shown, p.x(), p.y(), p.z(), t.x(), t.y(), t.z(), scene.camera.fov_deg,
-      scene.camera.backfaces == Backfaces::see_through ? "; backs of surfaces are seen through" : "");
+  view.sentence = sentence_of("chosen", scene, view, up, shown);
   return view;
 }
 
-ChosenView given_view(const Scene& scene, const WorldSplats& splats) {
+ChosenView given_view(Scene& scene, const WorldSplats& splats, bool bare) {
+  constexpr double parallel = 0.02;
   const ViewPoints points = view_points(splats.cloud, cut_of(CloudKind::model));
-  ChosenView view = recognise(splats, points);
+  ChosenView view;
+  view.kind = kind_of(splats, points);
   view.up = up_of(scene);
-  view.is_closed_room =
-      (view.kind == CloudKind::room || view.kind == CloudKind::station) && has_ceiling(points, view.up);
+  if (bare && !scene.camera.up) {
+    const UpChoice up = up_for(scene, splats, points, view.kind);
+    const Vector3d ahead = (scene.camera.look_at - scene.camera.position).normalized();
+    view.up = up.up;
+    if (ahead.cross(up.up).norm() > parallel)
+      scene.camera.up = up.up; // else the scene's own, which it does not look along
+    see_through_backs_of_open(scene, view, points);
+    view.sentence = sentence_of("given", scene, view, up, "");
+  }
+  view.is_closed_room = is_indoors(view, points);
   return view;
 }
 

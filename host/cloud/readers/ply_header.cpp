@@ -91,7 +91,8 @@ private:
     const std::vector<std::string_view> words = words_of(first);
     if (words.size() != 1 || words[0] != "ply" || first[0] != 'p')
       fail("not a PLY file: expected \"ply\", found " + quoted_bytes(first) +
-           "; convert other formats (LAS, E57, PCD) with CloudCompare or PDAL");
+           "; if it holds points in another format, give it that format's extension (las, laz, e57, pcd, ptx, pts, "
+           "xyz, csv, splat, spz)");
     if (end == std::string_view::npos)
       fail("the file ends after \"ply\", expected a header with a \"format\" line; the file is truncated");
     // "\r" alone ends lines only where the first one does it: a payload may begin with 0x0A or 0x0D, and then the

@@ -21,7 +21,7 @@ RecognisedKind kind_of_hills(int side, bool ceiling) {
   const Sites sites(places);
   const std::vector<float> spacing = spacings_of(sites);
   const std::vector<Vector3f> normals(sites.size(), Vector3f::UnitZ());
-  return recognise_kind(sites, spacing, normals, {}, FreeSpace(sites, spacing, 128), {false, {}, {}, true});
+  return recognise_kind(sites, spacing, normals, {}, FreeSpace(sites, spacing, 128), {false, {}, nullptr, {}, true});
 }
 
 } // namespace

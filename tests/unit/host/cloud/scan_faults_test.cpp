@@ -136,6 +136,24 @@ TEST_CASE("a terrain tile with its corner at the origin faces up", "[cloud][comp
   CHECK(share_up(cloud, 2) == 1.0);
 }
 
+TEST_CASE("coordinates of a map have z upwards, those of a model far from its origin tell nothing",
+          "[cloud][complete]") {
+  std::mt19937_64 random(15);
+  const auto wall_at = [&](const Vector3d& place) {
+    PointCloud cloud; // along x, as high as wide: nothing else tells
+    for (int i = 0; i < 4000; ++i)
+      cloud.position.push_back(place +
+                               Vector3d(uniform(random, 0, 20), uniform(random, 0, 0.2), uniform(random, 0, 20)));
+    return complete(cloud);
+  };
+  const CloudReport utm = wall_at({660000, 5648000, 240});
+  CHECK(utm.kind == CloudKind::map);
+  REQUIRE(utm.up.has_value());
+  CHECK(*utm.up == Vector3d::UnitZ());
+  CHECK(wall_at({10, 20, 3}).kind != CloudKind::map);
+  CHECK(wall_at({660000, 5648000, 240000}).kind != CloudKind::map);
+}
+
 TEST_CASE("a thin wall scanned on both sides has the discs of either side alone", "[cloud][complete]") {
   PointCloud one, both;
   std::mt19937_64 random(6);
