@@ -15,9 +15,9 @@ constexpr unsigned limit_neighbours = 8;
 // Radii over the spacing around: beside a 16-fold step in density 2 is right.
 constexpr float most_spacings = 2.5f;
 constexpr float surely_right = 1.0f; // over its own
-// Radii over the cloud's median spacing: where nothing vouches for a surface, and where the last few points of a scan
-// are metres apart, one to an object.
-constexpr float most_medians = 2.0f, most_medians_alone = 16.0f;
+// Radii over the cloud's median spacing: of leaves, which need not cover each other; where nothing vouches for a
+// surface; and where the last few points of a scan are metres apart, one to an object.
+constexpr float most_medians_of_leaves = 1.0f, most_medians = 2.0f, most_medians_alone = 16.0f;
 
 float largest_radius(const PointCloud& cloud, const Sites& sites, std::uint32_t site) {
   float largest = 0.0f;
@@ -47,7 +47,8 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spaci
   const bool sparse = kind == CloudKind::sparse, foliage = kind == CloudKind::foliage;
   const auto unit = static_cast<float>(sites.unit());
   const auto usual = static_cast<float>(median(sites.size(), [&](std::size_t s) { return spacing.spacing[s]; }));
-  const float widest = most_medians * usual, widest_alone = most_medians_alone * usual;
+  const float widest = (foliage ? most_medians_of_leaves : most_medians) * usual,
+              widest_alone = most_medians_alone * usual;
   parallel_ranges(sites.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, limit_neighbours> near;
     std::array<float, limit_neighbours> around;
