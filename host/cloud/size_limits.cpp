@@ -12,8 +12,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr unsigned limit_neighbours = 8;
-// Radii over the spacing around: beside a 16-fold step in density 2 is right.
-constexpr float most_spacings = 2.5f;
+// Radii over the spacing around: beside a 16-fold step in density 2 is right. Given normals are to be trusted, so that
+// cells are right where the surface is uneven: less than 5 opens pinholes.
+constexpr float most_spacings = 2.5f, most_spacings_given = 5.0f;
 constexpr float surely_right = 1.0f; // over its own
 // Radii over the cloud's median spacing: of leaves, which need not cover each other; where nothing vouches for a
 // surface; and where the last few points of a scan are metres apart, one to an object.
@@ -67,6 +68,7 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spaci
                    : own == Structure::volume ? std::min(0.75f * third, widest)
                    : sparse                   ? std::min({spacing.spacing[s], around[count / 2], widest})
                    : foliage                  ? std::min(most_spacings * around[count / 2], widest)
+                   : structure.empty()        ? most_spacings_given * around[count / 2]
                                               : most_spacings * around[count / 2];
       if (on_surface && std::min(largest, most) > widest_alone &&
           !lies_on_a_surface(sites, spacing.normal, s, near.data(), count))
