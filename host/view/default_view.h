@@ -19,9 +19,9 @@ struct ChosenView {
 /// left out. Up is the scene's where it says so, else the file's, else found (host/view/up.h).
 ChosenView choose_camera(Scene& scene, const WorldSplats& splats);
 
-/// What there is to say of a view that the scene has. Around a bare cloud (`bare`) up and whether backs are seen through
-/// are chosen as by choose_camera(), where neither camera nor scene says so: a camera that was copied from the log gives
-/// the same picture.
+/// What there is to say of a view that the scene has. Around a bare cloud (`bare`) up and whether backs are seen
+/// through are chosen as by choose_camera(), where neither camera nor scene says so: a camera that was copied from the
+/// log gives the same picture.
 ChosenView given_view(Scene& scene, const WorldSplats& splats, bool bare);
 
 } // namespace pointgi

@@ -8,8 +8,9 @@
 
 #ifdef HAS_SPECULAR
 
-/* Two mirrors that face each other keep a ray for ever; by then, roulette has ended all but those that lose nothing. */
-#define MOST_EYE_BOUNCES 64u
+/* Two mirrors that face each other keep a ray for ever; by then, roulette has ended all but those that lose nothing. The
+ * seam of two bodies of glass that overlap keeps some for hundreds of bounces. */
+#define MOST_EYE_BOUNCES 1024u
 
 /* Once a sample and bounce, in one place, without a branch: see add_radiance in kernels/render/path_sample.cl. */
 static inline void add_seen(float3 direct, float3 diffuse, float3 specular, float3 caustic, bool first, float* sums) {

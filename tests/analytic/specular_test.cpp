@@ -41,6 +41,16 @@ TEST_CASE("spheres that lose no light vanish in a uniform environment") {
   }
 }
 
+TEST_CASE("balls of two glasses that overlap vanish in a uniform environment, their seam too") {
+  // In the seam rays are reflected totally up to hundreds of times before they find their way out.
+  const std::string scene = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 40.0, 64, "[80, 60]") + environment(1.0) +
+                            material("glass", "glass", "ior = 1.5") + material("water", "glass", "ior = 1.33") +
+                            sphere("0.0, 0.0, 0.0", 0.8, "glass", 0.02) + sphere("0.5, 0.0, 0.0", 0.6, "water", 0.02);
+  const Picture picture = render_text(scene);
+  CHECK(mean(picture, "G") == Approx(1.0).epsilon(0.001));
+  CHECK(smallest(picture, "G") > 0.95); // one of 64 samples lost is 0.984
+}
+
 TEST_CASE("glass of index 1 is not to be seen") {
   const std::string wall = quad("-2.0, -2.0, -1.5", "2.0, 0.0, 0.0", "0.0, 4.0, 0.0", "bright", 0.1) +
                            quad("0.0, -2.0, -1.5", "2.0, 0.0, 0.0", "0.0, 4.0, 0.0", "dim", 0.1);

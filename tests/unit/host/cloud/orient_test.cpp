@@ -23,7 +23,8 @@ std::string orient(const Sites& sites, const OrientationEvidence& given, std::ve
   rein_in_isolated(sites, spacing);
   const FreeSpace space(sites, spacing, 128);
   OrientationEvidence evidence = given;
-  evidence.kind = recognise_kind(sites, spacing, normals, structure, space, {!given.stations.empty(), {}, nullptr, {}, false});
+  evidence.kind =
+      recognise_kind(sites, spacing, normals, structure, space, {!given.stations.empty(), {}, nullptr, {}, false});
   return orient_normals(sites, evidence, space, normals).how;
 }
 
