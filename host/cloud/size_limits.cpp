@@ -50,6 +50,7 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spaci
   const auto usual = static_cast<float>(median(sites.size(), [&](std::size_t s) { return spacing.spacing[s]; }));
   const float widest = (foliage ? most_medians_of_leaves : most_medians) * usual,
               widest_alone = most_medians_alone * usual;
+  const float of_surface = structure.empty() ? most_spacings_given : most_spacings;
   parallel_ranges(sites.size(), 2048, [&](std::size_t begin, std::size_t end) {
     std::array<Neighbour, limit_neighbours> near;
     std::array<float, limit_neighbours> around;
@@ -68,8 +69,7 @@ void limit_sizes(PointCloud& cloud, const Sites& sites, const SiteSpacing& spaci
                    : own == Structure::volume ? std::min(0.75f * third, widest)
                    : sparse                   ? std::min({spacing.spacing[s], around[count / 2], widest})
                    : foliage                  ? std::min(most_spacings * around[count / 2], widest)
-                   : structure.empty()        ? most_spacings_given * around[count / 2]
-                                              : most_spacings * around[count / 2];
+                                              : of_surface * around[count / 2];
       if (on_surface && std::min(largest, most) > widest_alone &&
           !lies_on_a_surface(sites, spacing.normal, s, near.data(), count))
         most = widest_alone;

@@ -14,8 +14,8 @@ constexpr double low_share = 0.01, high_share = 0.99; // a few extremes don't ta
 constexpr std::size_t most_samples = 1000000;
 constexpr double middle = 0.5;
 constexpr double least_range = 0.1; // of the quantiles' range
-constexpr double darkest =
-    0.3; // black lies so many ranges below the least value: that becomes 0.23 in sRGB, the albedo 0.04 of asphalt
+// Black lies so many ranges below the least value, which becomes 0.23 in sRGB: the albedo 0.04 of asphalt.
+constexpr double darkest = 0.3;
 
 using Fields = std::vector<const Field*>;
 
