@@ -2,6 +2,8 @@
 /// A splat in the root cube, as the octree's builders take it.
 #include "shared/octree_types.h"
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace pointgi {
 
@@ -23,5 +25,24 @@ inline bool is_back_of_sheet(const Splat& splat) {
 
 static_assert(sizeof(OctreePoint) == 16 * POINT_TEXELS, "a point is three texels");
 static_assert(sizeof(OctreeNode) == 16, "a node is one texel");
+
+/// A splat whose disc ends at a border: its index, and where.
+struct ClippedSplat {
+  std::uint32_t splat;
+  DiscClip clip;
+};
+
+/// Those of a list of splats that are clipped, ascending by index.
+using SplatClips = std::vector<ClippedSplat>;
+
+/// Index into `clips` of each of `count` splats, given by their index; no_clip for most. Empty where there are none.
+constexpr std::uint32_t no_clip = 0xffffffffu;
+inline std::vector<std::uint32_t> clip_of_each(const SplatClips& clips, std::size_t count) {
+  std::vector<std::uint32_t> of;
+  if (!clips.empty()) of.assign(count, no_clip);
+  for (std::size_t k = 0; k < clips.size(); ++k)
+    of[clips[k].splat] = static_cast<std::uint32_t>(k);
+  return of;
+}
 
 } // namespace pointgi

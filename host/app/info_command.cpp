@@ -108,7 +108,9 @@ ExitCode run_info(const std::string& file) {
   const std::vector<Splat> placed = place_in_cube(splats, frame);
   // No device is opened for this: the form told of is the default of CPU devices, unless the scene says.
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, ideal_device(true)).variant;
-  const OctreeSummary octree = summary_of(build_pools(placed, variant));
+  std::vector<std::uint32_t> id(placed.size());
+  std::iota(id.begin(), id.end(), 0u);
+  const OctreeSummary octree = summary_of(build_pools(placed, variant, clips_in_cube(splats, frame, placed, id)));
   std::printf("  splats      %zu\n", cloud.size());
   std::printf("  bounds      ");
   print_bounds(bounds_of(cloud, 0, cloud.size()));

@@ -19,6 +19,21 @@ enum class Structure : std::uint8_t {
   stray   ///< its neighbours are nearer to one another than it is to them
 };
 
+/// Two strips of a splat's plane, across each other, in which its disc counts: what it stands for has a border there.
+struct ClipStrips {
+  struct Strip {
+    Eigen::Vector3d axis{0, 0, 0};     ///< unit, across the normal; 0: cuts nothing off
+    double low = -1.0, high = 1.0; ///< along it from the centre, world units; may be infinite
+  };
+  std::array<Strip, 2> strip;
+};
+
+/// A point that ends at a border.
+struct ClippedPoint {
+  std::uint32_t point;
+  ClipStrips clip;
+};
+
 /// Every attribute array is either empty (the attribute is missing) or as long as `position`.
 struct PointCloud {
   std::vector<Eigen::Vector3d> position; ///< world units; double, so that map coordinates of 1e6 keep their millimetres
@@ -33,6 +48,7 @@ struct PointCloud {
   std::vector<Field> fields;           ///< those that were asked for (ReadRequest), and what stands in for colours
   std::vector<std::array<std::uint32_t, 3>> triangle; ///< faces, where the file has any; indices into `position`
   std::vector<Eigen::Vector3d> stations;              ///< positions of scanners; not an attribute of points
+  std::vector<ClippedPoint> clipped; ///< of shapes: points that end at borders, ascending; not an attribute
   bool normals_unsigned = false; ///< `normal` tells the plane of the surface, and either side of it
 
   std::size_t size() const { return position.size(); }

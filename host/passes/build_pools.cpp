@@ -4,7 +4,7 @@
 
 namespace pointgi {
 
-OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant& variant) {
+OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant& variant, const SplatClips& clips) {
   const bool wide = variant.form == TraversalForm::wide;
   TreeOptions options;
   options.axis_bits = variant.axis_bits;
@@ -13,7 +13,8 @@ OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant
   options.order = variant.order;
   options.listing = wide ? Listing::centres : Listing::overlaps;
   const Tree tree = build_tree(splats, options);
-  OctreePools pools = wide ? OctreePools(pack_wide(splats, tree, variant.lanes)) : OctreePools(pack_step(splats, tree));
+  OctreePools pools = wide ? OctreePools(pack_wide(splats, tree, variant.lanes, clips))
+                           : OctreePools(pack_step(splats, tree, clips));
 #ifndef NDEBUG
   std::visit([](const auto& p) { verify(p); }, pools);
 #endif

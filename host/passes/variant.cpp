@@ -87,14 +87,15 @@ std::string name_of(const TraversalVariant& v) {
 }
 
 std::string build_options(const TraversalVariant& variant) {
+  const char* clip_option = variant.clips ? " -D HAS_CLIPS" : "";
   if (variant.form == TraversalForm::wide)
-    return "-D TRAVERSAL_FORM=FORM_WIDE -D WIDE_LANES=" + std::to_string(variant.lanes);
+    return "-D TRAVERSAL_FORM=FORM_WIDE -D WIDE_LANES=" + std::to_string(variant.lanes) + clip_option;
   const char* storage = variant.storage == PoolStorage::buffer           ? "POOL_BUFFER"
                         : variant.storage == PoolStorage::image1d_buffer ? "POOL_IMAGE1D"
                                                                          : "POOL_IMAGE2D";
   std::string options = std::string("-D POOL_STORAGE=") + storage +
                         " -D OCTREE_AXIS_BITS=" + std::to_string(variant.axis_bits) +
-                        " -D POOL_WIDTH_LOG2=" + std::to_string(image_width_log2);
+                        " -D POOL_WIDTH_LOG2=" + std::to_string(image_width_log2) + clip_option;
   if (variant.stepping == Stepping::absolute_delta) options += " -D STEP_ABSOLUTE";
   return options;
 }

@@ -20,6 +20,7 @@ struct TraversalVariant {
   RayGrouping grouping = RayGrouping::ray;
   WorkGroup group;
   bool fast_math = false;
+  bool clips = false; ///< of the scene, not of the choice: some splats end at borders
 };
 
 /// Tells variants apart, for people and for --filter: "step-n2-buffer-morton-leaf32-ray-8x4",

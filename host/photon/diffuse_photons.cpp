@@ -24,7 +24,7 @@ PhotonSources sources_of_radiosity(View<float> radiosity, View<Splat> points,
     const float* b = &radiosity[3 * p];
     sources.radiance.push_back({inverse_pi * b[0], inverse_pi * b[1], inverse_pi * b[2], 0.0f});
     if (passed_on(points[p]) > 0.0 && points[p].area > 0.0f)
-      sources.emitters.push_back({static_cast<pg_uint>(p), 0.0f});
+      sources.emitters.push_back({static_cast<pg_uint>(p), 0.0f, {}});
   }
   accumulate_shares(sources.emitters, [&](const Emitter& emitter) {
     const Splat& splat = points[emitter.point];

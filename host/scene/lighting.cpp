@@ -124,7 +124,7 @@ std::array<float, 16> world_to_ndc(const Scene& scene) {
   return flat(projection * camera_matrix(scene));
 }
 
-DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points) {
+DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points, const SplatClips& clips) {
   DeviceLighting result;
   result.radiance = choose_scale(scene, frame);
   const double scale = result.radiance.scale;
@@ -143,8 +143,11 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
     result.flags |= material.flags;
   }
   for (std::size_t p = 0; p < points.size; ++p)
-    if (emitted(p) > 0.0) result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f});
+    if (emitted(p) > 0.0) result.emitters.push_back({static_cast<std::uint32_t>(p), 0.0f, {}});
   accumulate_shares(result.emitters, [&](const Emitter& e) { return emitted(e.point); });
+  const std::vector<std::uint32_t> clip_of = clip_of_each(clips, points.size);
+  for (Emitter& e : result.emitters)
+    if (!clip_of.empty() && clip_of[e.point] != no_clip) e.clip = clips[clip_of[e.point]].clip;
   double all_emitted = 0.0;
   for (const Emitter& e : result.emitters)
     all_emitted += emitted(e.point);

@@ -30,8 +30,9 @@ struct DeviceLighting {
   pg_uint flags = 0;          ///< of the materials of all splats
 };
 
-/// `points` is the octree's point pool: emitters refer to it.
-DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points);
+/// `points` is the octree's point pool: emitters refer to it. `clips`: of those points.
+DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points,
+                               const SplatClips& clips = {});
 
 /// The camera for an image of this size in the frame's cube.
 Camera device_camera(const Scene& scene, const Frame& frame);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace pointgi {
 namespace {
@@ -46,6 +47,19 @@ public:
     cloud_.area.push_back(static_cast<float>(area));
   }
 
+  /// The splat that was added last ends at these borders, if its disc reaches one of them.
+  void clip_last(const ClipStrips& clip) {
+    const double radius = cloud_.radius.back();
+    ClipStrips reached;
+    bool any = false;
+    for (std::size_t k = 0; k < clip.strip.size(); ++k) {
+      if (-clip.strip[k].low >= radius && clip.strip[k].high >= radius) continue;
+      reached.strip[k] = clip.strip[k];
+      any = true;
+    }
+    if (any) cloud_.clipped.push_back({static_cast<std::uint32_t>(cloud_.position.size() - 1), reached});
+  }
+
   PointCloud take() { return std::move(cloud_); }
 
 private:
@@ -76,9 +90,15 @@ void sample(const QuadShape& quad, double spacing, Splats& splats) {
   const double radius = overlap * 0.5 * std::max((step_u + step_v).norm(), (step_u - step_v).norm());
   const double area = span.norm() / (count_u * count_v);
   const Vector3d normal = span.normalized();
+  // Across the edges, inwards; how far a step along the other edge goes that way.
+  const Vector3d across_u = quad.edge_v.cross(normal).normalized(), across_v = normal.cross(quad.edge_u).normalized();
+  const double width_u = step_u.dot(across_u), width_v = step_v.dot(across_v);
   for (double j = 0.5; j < count_v; ++j)
-    for (double i = 0.5; i < count_u; ++i)
+    for (double i = 0.5; i < count_u; ++i) {
       splats.add(quad.corner + i * step_u + j * step_v, normal, radius, area);
+      splats.clip_last({{{{across_u, -i * width_u, (count_u - i) * width_u},
+                          {across_v, -j * width_v, (count_v - j) * width_v}}}});
+    }
 }
 
 std::vector<QuadShape> faces_of(const BoxShape& box) {
@@ -157,7 +177,9 @@ double count_of(const DiscShape& disc, double spacing) {
   return count;
 }
 
-/// One splat in the middle, then concentric rings: the rim is as round as the outermost ring. Inside a ring's cell the
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+/// One splat in the middle, then concentric rings. The outermost end at a regular polygon of the disc's area, a side each. Inside a ring's cell the
 /// outer corners are the farthest points; inner corners are nearer, as the cell widens outwards.
 void sample(const DiscShape& disc, double spacing, Splats& splats) {
   const double rings = rings_of(disc, spacing);
@@ -166,6 +188,8 @@ void sample(const DiscShape& disc, double spacing, Splats& splats) {
   const auto [u, v] = frame_of(normal);
   // A disc of one splat is that splat: nothing is left over that an overlap could be needed for.
   splats.add(disc.centre, normal, (rings > 0 ? overlap : 1.0) * width / 2, pi * width * width / 4);
+  const double half_side = rings > 0 ? pi / on_ring(rings) : 0.0;
+  const double side = rings > 0 ? disc.radius * std::sqrt(half_side / std::tan(half_side)) : 0.0; // from the middle
   for (double j = 1; j <= rings; ++j) {
     const double in_ring = on_ring(j);
     const double half_cell = pi / in_ring;
@@ -174,7 +198,9 @@ void sample(const DiscShape& disc, double spacing, Splats& splats) {
     const double area = 2.0 * pi * j * width * width / in_ring;
     for (double i = 0; i < in_ring; ++i) {
       const double turn = (2.0 * i + j) * half_cell; // every other ring starts half a cell on
-      splats.add(disc.centre + j * width * (std::cos(turn) * u + std::sin(turn) * v), normal, overlap * reach, area);
+      const Vector3d outward = std::cos(turn) * u + std::sin(turn) * v;
+      splats.add(disc.centre + j * width * outward, normal, overlap * reach, area);
+      if (j == rings) splats.clip_last({{{{outward, -unbounded, side - j * width}, {}}}});
     }
   }
 }
@@ -197,7 +223,8 @@ void sample(const CylinderShape& tube, double spacing, Splats& splats) {
   const double height = axis.norm();
   const double around = cells_around(tube, spacing);
   const double rows = cells_along(tube, spacing);
-  const auto [u, v] = frame_of(axis.normalized());
+  const Vector3d along = axis / height;
+  const auto [u, v] = frame_of(along);
   const double half_cell = pi / around;
   const double radius = overlap * std::hypot(tube.radius * std::tan(half_cell), 0.5 * height / rows);
   const double area = 2.0 * pi * tube.radius * height / (around * rows);
@@ -207,6 +234,7 @@ void sample(const CylinderShape& tube, double spacing, Splats& splats) {
       const double turn = 2.0 * half_cell * i;
       const Vector3d outward = std::cos(turn) * u + std::sin(turn) * v;
       splats.add(centre + tube.radius * outward, tube.inward ? Vector3d(-outward) : outward, radius, area);
+      splats.clip_last({{{{along, -row / rows * height, (1.0 - row / rows) * height}, {}}}});
     }
   }
 }

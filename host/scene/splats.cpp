@@ -5,6 +5,7 @@
 #include "host/scene/field_albedo.h"
 #include "host/scene/sample_shape.h"
 #include "octree/parallel.h"
+#include "shared/traversal_types.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -118,6 +119,9 @@ void append(WorldSplats& all, PointCloud&& part, std::uint32_t material) {
   all.first.push_back(static_cast<std::uint32_t>(all.cloud.size()));
   const auto join = [](auto& to, auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   all.material.insert(all.material.end(), part.size(), material);
+  for (const ClippedPoint& c : part.clipped)
+    all.clipped.push_back({all.first.back() + c.point, c.clip});
+  part.clipped = {};
   if (all.cloud.size() == 0) { // the common scene, one cloud, is not copied
     all.cloud = std::move(part);
     all.cloud.triangle = {};
@@ -210,6 +214,30 @@ WorldSplats load_splats(const Scene& scene) {
     append(all, std::move(cloud), material);
   }
   return all;
+}
+
+SplatClips clips_in_cube(const WorldSplats& splats, const Frame& frame, View<Splat> placed, View<std::uint32_t> id) {
+  SplatClips result;
+  if (splats.clipped.empty()) return result;
+  constexpr double far = 4.0; // longer than anything in the cube; infinities would make NaN of an axis of 0
+  std::vector<std::uint32_t> clip_of(splats.cloud.size(), no_clip);
+  for (std::size_t k = 0; k < splats.clipped.size(); ++k)
+    clip_of[splats.clipped[k].point] = static_cast<std::uint32_t>(k);
+  for (std::uint32_t i = 0; i < placed.size; ++i) {
+    if (clip_of[id[i]] == no_clip) continue;
+    const ClipStrips& world = splats.clipped[clip_of[id[i]]].clip;
+    const double margin = CLIP_MARGIN(placed[i].radius);
+    ClippedSplat clipped{i, {}};
+    for (std::size_t k = 0; k < CLIP_STRIPS; ++k) {
+      ClipStrip& strip = clipped.clip.strip[k];
+      const Eigen::Vector3f axis = world.strip[k].axis.cast<float>();
+      std::copy_n(axis.data(), 3, strip.axis);
+      strip.low = static_cast<float>(std::max(-far, world.strip[k].low / frame.side - margin));
+      strip.high = static_cast<float>(std::min(far, world.strip[k].high / frame.side + margin));
+    }
+    result.push_back(clipped);
+  }
+  return result;
 }
 
 std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame) {

@@ -4,6 +4,7 @@
 #include "host/scene/frame.h"
 #include "host/scene/scene.h"
 #include "octree/splat.h"
+#include "octree/view.h"
 
 namespace pointgi {
 
@@ -13,6 +14,7 @@ struct WorldSplats {
   std::vector<std::uint32_t> material; ///< index into Scene::materials, one a point
   std::vector<CloudReport> reports;    ///< one a [[cloud]], in the scene's order
   std::vector<std::uint32_t> record;   ///< of the first cloud's points: their numbers in its file; empty: their own
+  std::vector<ClippedPoint> clipped;   ///< points that end at borders, ascending
   std::vector<std::uint32_t> first;    ///< point of each object: of the clouds, then the shapes, in the scene's order
 };
 
@@ -29,6 +31,9 @@ void append_cloud(WorldSplats& splats, PointCloud&& cloud, const MaterialSetting
 
 /// How a cloud is turned.
 Eigen::Matrix3d rotation_of(const CloudSettings& settings);
+
+/// The clips of splats that were placed in the frame's cube; id[k]: the point that splat k came from.
+SplatClips clips_in_cube(const WorldSplats& splats, const Frame& frame, View<Splat> placed, View<std::uint32_t> id);
 
 /// The device's points in the frame's cube.
 std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame);

@@ -66,6 +66,7 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   if (const std::size_t sheets = divide_sheets(scene, placed.splats, placed.id, world.cloud.structure, sides);
       sheets > 0)
     log_info("{} splats are two-sided: each side is a point of its own", sheets);
+  placed.clips = clips_in_cube(world, placed.frame, placed.splats, placed.id);
   return placed;
 }
 

@@ -45,7 +45,9 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   stages.start("octree");
   ready.frame = placed.frame;
   ready.choice = choose_for(scene, session.info());
-  OctreePools pools = build_pools(placed.splats, ready.choice.variant);
+  OctreePools pools = build_pools(placed.splats, ready.choice.variant, placed.clips);
+  ready.choice.variant.clips = !placed.clips.empty();
+  const SplatClips clips = clips_of(pools);
   std::vector<Splat>().swap(placed.splats); // assigning {} would keep its memory
   ready.octree = summary_of(pools);
   ready.first_ids = placed.first_ids;
@@ -53,7 +55,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.ids = ids_of(source_of(pools), placed.id);
   ready.on_device = upload(session, std::move(pools), ready.choice.variant, ready.points);
   stages.finish(ready.octree.nodes, "nodes");
-  ready.lighting = device_lighting(scene, ready.frame, ready.points);
+  ready.lighting = device_lighting(scene, ready.frame, ready.points, clips);
   return ready;
 }
 

@@ -106,9 +106,11 @@ private:
 
   void list_variants() {
     reference_.max_depth = request_.scene.octree.max_depth;
+    reference_.clips = !request_.clips.empty();
     std::vector<TraversalVariant> all{reference_};
     for (TraversalVariant v : request_.variants) {
       v.max_depth = reference_.max_depth;
+      v.clips = reference_.clips;
       if (name_of(v) != name_of(reference_)) all.push_back(v);
     }
     std::map<std::string, std::size_t> launch_of, group_of;

@@ -35,10 +35,10 @@ ProfileBench::ProfileBench(Session& session, const ProfileRequest& request) : se
 
 ProfiledPools ProfileBench::load(const TraversalVariant& variant) {
   if (last_key_ != tree_key(variant)) {
-    last_pools_ = build_pools(request_.splats, variant);
+    last_pools_ = build_pools(request_.splats, variant, request_.clips);
     auto tree = std::make_shared<ProfiledTree>();
     tree->source.assign(source_of(last_pools_).begin(), source_of(last_pools_).end());
-    tree->lighting = device_lighting(request_.scene, request_.frame, points_of(last_pools_));
+    tree->lighting = device_lighting(request_.scene, request_.frame, points_of(last_pools_), clips_of(last_pools_));
     tree->bytes = summary_of(last_pools_).bytes;
     last_tree_ = tree;
     last_key_ = tree_key(variant);

@@ -14,7 +14,11 @@ static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global 
   float3 a, b;
   tangents(normal.xyz, &a, &b);
   const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
-  float3 towards = centre.xyz + r * cos(phi) * a + r * sin(phi) * b - s->position;
+  float3 off = r * cos(phi) * a + r * sin(phi) * b;
+#ifdef HAS_CLIPS
+  off = fold_into_clip(&emitters[i].clip, off);
+#endif
+  float3 towards = centre.xyz + off - s->position;
   /* Not nearer than a tenth of the disc: the estimate of a light that touches the surface stays finite. */
   const float exact2 = dot3(towards, towards), d2 = fmax(exact2, 0.01f * area);
   sample->distance = sqrt(d2);

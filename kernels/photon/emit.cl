@@ -58,7 +58,11 @@ static inline float3 emitter_point(POOL_PARAMS, PhotonSource from, float4 u, Emi
   e->ends.origin_normal = normal.xyz;
   e->ends.origin_radius = centre.w;
   e->power = share > 0.0f ? from.radiance[i].xyz * (area / share) : (float3)(0.0f);
-  return centre.xyz + disc_point(normal.xyz, sqrt(area * 0.31830989f), u.z, u.w);
+  float3 off = disc_point(normal.xyz, sqrt(area * 0.31830989f), u.z, u.w);
+#ifdef HAS_CLIPS
+  off = fold_into_clip(&from.lights.emitters[i].clip, off);
+#endif
+  return centre.xyz + off;
 }
 
 static inline float luminance_of(float3 c) { return dot3(c, (float3)(0.2126f, 0.7152f, 0.0722f)); }

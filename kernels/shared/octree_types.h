@@ -1,6 +1,7 @@
 #ifndef POINTGI_SHARED_OCTREE_TYPES_H
 #define POINTGI_SHARED_OCTREE_TYPES_H
 #include "shared/scalar.h"
+#include "shared/traversal_types.h"
 /* The three pools of the octree as the device reads them (method.md section 2). Positions and lengths are in units of
  * the root cube, [0,1)^3. All children of a node are stored, empty ones too, next to each other along x + N*y + N*N*z.
  */
@@ -28,7 +29,9 @@ typedef struct OctreeNode {
 
 /* Begin-End pool, 4-byte entries: a leaf's beginP (index of its first own point), then the addresses of its extra
  * splats; the entry behind them is the next leaf's beginP, and thereby this leaf's endP. The last leaf is followed by
- * one closing entry, the number of points. */
+ * one closing entry, the number of points.
+ * Where a splat is clipped (HAS_CLIPS) the pool begins with an entry for each point: where the CLIP_WORDS words of its
+ * DiscClip begin in this pool, or 0; the clips follow, then the leaves. */
 
 /* Point pool: 44 bytes a point in three 16-byte texels; the twelfth scalar carries the effective area. */
 #define POINT_TEXELS 3
@@ -49,6 +52,23 @@ typedef struct OctreePoint {
 #define SHEET_MATERIALS 2097152u /* 2^21: below it a float holds the quarters */
 #define SHEET_SIDE(material) ((material) - (float)(pg_uint)(material))
 
+/* Where a splat's disc ends before its rim does: at the border of what it stands for, two strips across each other in
+ * the disc's plane. A hit counts where low <= axis . (hit - centre) <= high holds of both. */
+#define CLIP_STRIPS 2
+typedef struct ClipStrip {
+  float axis[3];   /* words 0-2: unit, across the disc's normal; 0 in a strip that cuts nothing off */
+  float low, high; /* words 3-4: root cube; low <= 0 <= high */
+} ClipStrip;
+typedef struct DiscClip {
+  ClipStrip strip[CLIP_STRIPS];
+} DiscClip;
+#define STRIP_WORDS 5
+#define CLIP_WORDS (CLIP_STRIPS * STRIP_WORDS)
+
+/* Borders that meet reach past each other by this much, root cube units, or rays would get through between them: twice
+ * what a ray starts behind its surface. radius: of the disc. */
+#define CLIP_MARGIN(radius) (2.0f * SEGMENT_MARGIN(radius))
+
 /* The wide form of the same octree (N = 2): a node keeps the boxes of what its children really hold, radii included, so
  * a splat lies in one leaf only and no cell is listed. Boxes are widened by a little more than a hit's rounding. */
 #define WIDE_CHILDREN 8
@@ -64,13 +84,17 @@ typedef struct WideNode {
 /* A leaf's splats in blocks of WIDE_LANES (8 or 16), structure of arrays, 32-bit words:
  *   0..3L-1 centre x, y, z;  3L..4L-1 radius (-1 in unused lanes);  4L..7L-1 normal x, y, z;  7L index of the block's
  *   first point in the point pool, the others follow it;  7L+1 a bit for each lane that is a side of a sheet;
- *   7L+2..8L-1 zero */
+ *   7L+2 a bit for each lane whose splat is clipped;  7L+3 the word of the pool at which their DiscClips begin, lane
+ *   after lane;  7L+4..8L-1 zero
+ * The clips stand behind all blocks. */
 #define WIDE_BLOCK_WORDS(lanes) (8 * (lanes))
 #define WIDE_CENTRE(lanes, axis) ((axis) * (lanes))
 #define WIDE_RADIUS(lanes) (3 * (lanes))
 #define WIDE_NORMAL(lanes, axis) ((4 + (axis)) * (lanes))
 #define WIDE_FIRST(lanes) (7 * (lanes))
 #define WIDE_SHEETS(lanes) (7 * (lanes) + 1)
+#define WIDE_CLIPPED(lanes) (7 * (lanes) + 2)
+#define WIDE_CLIPS(lanes) (7 * (lanes) + 3)
 
 /* Deepest wide tree that a traversal's stack holds: seven waiting siblings a level. */
 #define WIDE_MAX_DEPTH 27

@@ -2,6 +2,7 @@
 #define POINTGI_SHARED_RENDER_TYPES_H
 #include "shared/light_kinds.h"
 #include "shared/material_kinds.h"
+#include "shared/octree_types.h"
 #include "shared/scalar.h"
 /* What the host tells the render kernels of a scene. Lengths are in root cube units; radiometric quantities are divided
  * by one power of two of the host's choosing (RadianceScale), so that lights of 1e-20 or 1e20 W stay inside float. */
@@ -69,6 +70,7 @@ typedef struct LightSource {
 typedef struct Emitter {
   pg_uint point;    /* bytes 0-3: index into the point pool */
   float cumulative; /* bytes 4-7: share of this and all earlier emitters in the emitted power; the last is 1 */
+  DiscClip clip;    /* bytes 8-47: zero where the splat has none */
 } Emitter;
 
 typedef struct Material {

@@ -3,6 +3,7 @@
 #include "lib/lanes.cl"
 #include "lib/vector.cl"
 #include "shared/octree_types.h"
+#include "surface/clip.cl"
 #include "surface/disc.cl"
 
 /* What meet says of each disc of a block. */
@@ -48,3 +49,32 @@ static inline float16 meet_rays(float16 dx, float16 dy, float16 dz, float3 centr
   *inside = fma(x, x, fma(y, y, z * z)) <= radius * radius;
   return t;
 }
+
+/* Of the lanes of a block that are met at h->t, those where the disc is not clipped off. Clips stand in the pool of the
+ * blocks. */
+#ifdef HAS_CLIPS
+static inline lanes_i unclipped_lanes(const __global float* blocks, const __global float* block, float3 origin,
+                                      float3 direction, lanes_f t, lanes_i met) {
+  const uint clipped = as_uint(block[WIDE_CLIPPED(WIDE_LANES)]);
+  if (clipped == 0u || !any_lane(met))
+    return met;
+  int met_of[WIDE_LANES];
+  float t_of[WIDE_LANES];
+  store_lanes(met, met_of);
+  store_lanes(t, t_of);
+  const __global float* clip = blocks + as_uint(block[WIDE_CLIPS(WIDE_LANES)]);
+  for (uint left = clipped; left != 0u; left &= left - 1u, clip += CLIP_WORDS) {
+    const uint lane = popcount((left & (0u - left)) - 1u);
+    if (met_of[lane] == 0)
+      continue;
+    const float3 centre = (float3)(block[WIDE_CENTRE(WIDE_LANES, 0) + lane], block[WIDE_CENTRE(WIDE_LANES, 1) + lane],
+                                   block[WIDE_CENTRE(WIDE_LANES, 2) + lane]);
+    if (is_clipped_off(clip, fma((float3)(t_of[lane]), direction, origin - centre)))
+      met_of[lane] = 0;
+  }
+  return load_lanes(met_of);
+}
+#define UNCLIPPED_LANES(block, ray, h, met) unclipped_lanes(block_pool, block, (ray).origin, (ray).direction, (h).t, met)
+#else
+#define UNCLIPPED_LANES(block, ray, h, met) (met)
+#endif

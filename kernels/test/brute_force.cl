@@ -1,14 +1,25 @@
 /* The truth beside every traversal: each ray against each splat of the pool, without the octree. For tests.
  * NDRange: 1-D, one work-item a ray, padded. answers[i] = nearest hit of rays[i], ties to the lowest index; for
- * FRONTS_ONLY as for the octree (kernels/surface/disc.cl);
+ * FRONTS_ONLY as for the octree (kernels/surface/disc.cl); for HAS_CLIPS splat i has clips[i];
  * brute_force_closest_from of those that do not belong to the surface which it leaves, surfaces[i] = (normal, radius). */
 #include "lib/pools.cl"
 #include "lib/ray.cl"
+#include "surface/clip.cl"
 #include "surface/disc.cl"
 #include "surface/own_surface.cl"
 
+#ifdef HAS_CLIPS
+#define CLIP_PARAM , const __global DiscClip* clips
+#define CLIP_ARG , clips
+#define IS_CUT(k, off) is_clipped_off((const __global float*)(clips + (k)), off)
+#else
+#define CLIP_PARAM
+#define CLIP_ARG
+#define IS_CUT(k, off) false
+#endif
+
 static inline RayAnswer nearest_of_all(const __global float4* points, uint point_count, const __global RayQuery* ray,
-                                       bool leaves, OcclusionEnds ends) {
+                                       bool leaves, OcclusionEnds ends CLIP_PARAM) {
   const float3 origin = load3(ray->origin), direction = load3(ray->direction);
   RayAnswer best = {ray->t_max, NO_SPLAT};
   for (uint k = 0u; k < point_count; ++k) {
@@ -17,7 +28,8 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
     float q;
     const float t = meet(origin, direction, centre, normal.xyz, &q);
     if (t > ray->t_min && t < best.t && SIDE_COUNTS(dot3(normal.xyz, direction)) &&
-        !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal))) {
+        !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal)) &&
+        !IS_CUT(k, fma((float3)(t), direction, origin - centre.xyz))) {
       best.t = t;
       best.splat = k;
     }
@@ -26,17 +38,17 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
 }
 
 __kernel void brute_force_closest(const __global float4* points, uint point_count, const __global RayQuery* rays,
-                                  __global RayAnswer* answers, uint count) {
+                                  __global RayAnswer* answers, uint count CLIP_PARAM) {
   const uint i = get_global_id(0);
   if (i < count)
-    answers[i] = nearest_of_all(points, point_count, rays + i, false, free_ends());
+    answers[i] = nearest_of_all(points, point_count, rays + i, false, free_ends() CLIP_ARG);
 }
 
 __kernel void brute_force_closest_from(const __global float4* points, uint point_count, const __global RayQuery* rays,
-                                       const __global float4* surfaces, __global RayAnswer* answers, uint count) {
+                                       const __global float4* surfaces, __global RayAnswer* answers, uint count CLIP_PARAM) {
   const uint i = get_global_id(0);
   if (i >= count)
     return;
   const OcclusionEnds ends = {surfaces[i].xyz, (float3)(0.0f), surfaces[i].w, 0.0f};
-  answers[i] = nearest_of_all(points, point_count, rays + i, true, ends);
+  answers[i] = nearest_of_all(points, point_count, rays + i, true, ends CLIP_ARG);
 }

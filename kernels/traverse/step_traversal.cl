@@ -91,6 +91,28 @@ static inline bool walk_next(POOL_PARAMS, Walk* w) {
     }                                                                                \
   }
 
+/* Whether splat i, which the ray meets at t, is clipped off there. */
+#ifdef HAS_CLIPS
+static inline bool is_cut(POOL_PARAMS, uint i, Ray ray, float t, float3 centre) {
+  const uint at = pool_begin_end(i);
+  if (at == 0u)
+    return false;
+  const float3 off = fma((float3)(t), ray.direction, ray.origin - centre);
+  bool outside = false;
+  for (uint k = 0u; k < CLIP_STRIPS; ++k) {
+    const uint word = at + STRIP_WORDS * k;
+    const float3 axis = (float3)(as_float(pool_begin_end(word)), as_float(pool_begin_end(word + 1u)),
+                                 as_float(pool_begin_end(word + 2u)));
+    const float s = dot3(axis, off);
+    outside = outside || s < as_float(pool_begin_end(word + 3u)) || s > as_float(pool_begin_end(word + 4u));
+  }
+  return outside;
+}
+#define IS_CUT(i, ray, t, centre) is_cut(POOL_ARGS, i, ray, t, (centre).xyz)
+#else
+#define IS_CUT(i, ray, t, centre) false
+#endif
+
 /* Nearest hit in (ray.t_min, ray.t_max); of splats hit at the same t the one with the lowest index. */
 static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   Hit best = {ray.t_max, NO_SPLAT};
@@ -103,9 +125,10 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       float q;
       const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
-      const float t = meet(ray.origin, ray.direction, pool_point_texel(POINT_TEXELS * i), normal, &q);
+      const float4 centre = pool_point_texel(POINT_TEXELS * i);
+      const float t = meet(ray.origin, ray.direction, centre, normal, &q);
       if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
-          SIDE_COUNTS(dot3(normal, ray.direction))) {
+          SIDE_COUNTS(dot3(normal, ray.direction)) && !IS_CUT(i, ray, t, centre)) {
         best.t = t;
         best.splat = i;
       }
@@ -129,7 +152,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
       float q;
       const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
       if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
-          !belongs_to_origin(ends, ray.direction, t, centre.w, normal)) {
+          !belongs_to_origin(ends, ray.direction, t, centre.w, normal) && !IS_CUT(i, ray, t, centre)) {
         best.t = t;
         best.splat = i;
       }
@@ -151,7 +174,8 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
       const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
       const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.direction, ray.t_max, t, centre.w, normal))
+      if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.direction, ray.t_max, t, centre.w, normal) &&
+          !IS_CUT(i, ray, t, centre))
         return true;
     })
   } while (walk.t_exit < ray.t_max && walk_next(POOL_ARGS, &walk));
@@ -170,7 +194,8 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
       const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
       const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t >= t_from && t < walk.t_exit && t >= blend->t_first && t < blend->t_end && i != blend->splat)
+      if (t >= t_from && t < walk.t_exit && t >= blend->t_first && t < blend->t_end && i != blend->splat &&
+          !IS_CUT(i, ray, t, centre))
         blend_add(POOL_ARGS, blend, ray, i, t, q, normal, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
     })
     t_from = walk.t_exit;

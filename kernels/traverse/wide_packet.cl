@@ -155,13 +155,33 @@ static inline lanes_i groups_met(const __global float* block, const PacketBounds
   return met;
 }
 
-/* One splat against one group of rays. */
-static inline void hit_group(const RayPacket* p, int group, float3 centre, float radius, float3 normal, uint index,
-                             PacketHits* best) {
+#ifdef HAS_CLIPS
+/* is_clipped_off of a group's rays at t. centre: from the rays' origin. */
+static inline int16 clipped_off_group(const RayPacket* p, int group, float16 t, float3 centre,
+                                      const __global float* clip) {
+  const float16 x = fma(t, p->x[group], (float16)(-centre.x)), y = fma(t, p->y[group], (float16)(-centre.y)),
+                z = fma(t, p->z[group], (float16)(-centre.z));
+  int16 outside = (int16)(0);
+  for (int k = 0; k < CLIP_STRIPS; ++k, clip += STRIP_WORDS) {
+    const float3 axis = STRIP_AXIS(clip);
+    const float16 s = fma((float16)(axis.x), x, fma((float16)(axis.y), y, axis.z * z));
+    outside |= (s < STRIP_LOW(clip)) | (s > STRIP_HIGH(clip));
+  }
+  return outside;
+}
+#endif
+
+/* One splat against one group of rays. `clip`: null where the splat has none. */
+static inline void hit_group(const RayPacket* p, int group, float3 centre, float radius, float3 normal,
+                             const __global float* clip, uint index, PacketHits* best) {
   const float16 t_best = best->t[group];
   const uint16 splat_best = best->splat[group];
   int16 inside;
   const float16 t = meet_rays(p->x[group], p->y[group], p->z[group], centre, radius, normal, &inside);
+#ifdef HAS_CLIPS
+  if (clip != 0)
+    inside &= ~clipped_off_group(p, group, t, centre, clip);
+#endif
   const int16 nearer = inside & (t > p->t_min) &
                        ((t < t_best) | ((t == t_best) & (as_int16((uint16)(index) < splat_best))))
                        AND_SIDE_COUNTS(fma((float16)(normal.x), p->x[group],
@@ -171,12 +191,15 @@ static inline void hit_group(const RayPacket* p, int group, float3 centre, float
 }
 
 /* The splats of a block that reach into the packet, against the rays that they reach. */
-static inline void hit_block_by_packet(const __global float* block, const RayPacket* p, const PacketBounds* bounds,
+static inline void hit_block_by_packet(const __global float* blocks, const __global float* block, const RayPacket* p, const PacketBounds* bounds,
                                        float t_to, PacketHits* best) {
   const lanes_i met = groups_met(block, bounds, t_to);
   int groups_of[WIDE_LANES];
   store_lanes(met, groups_of);
   const uint first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
+#ifdef HAS_CLIPS
+  const uint clipped = as_uint(block[WIDE_CLIPPED(WIDE_LANES)]);
+#endif
   for (int part = 0; part < WIDE_LANES / 8; ++part)
     for (ulong left = byte_a_lane(vload8(part, groups_of) != 0); left != 0ul; left &= left - 1ul) {
       const uint lane = 8u * part + lowest_byte(left);
@@ -184,9 +207,14 @@ static inline void hit_block_by_packet(const __global float* block, const RayPac
                                      block[WIDE_CENTRE(WIDE_LANES, 2) + lane]) - p->origin;
       const float3 normal = (float3)(block[WIDE_NORMAL(WIDE_LANES, 0) + lane], block[WIDE_NORMAL(WIDE_LANES, 1) + lane],
                                      block[WIDE_NORMAL(WIDE_LANES, 2) + lane]);
+      const __global float* clip = 0;
+#ifdef HAS_CLIPS
+      if (clipped & (1u << lane))
+        clip = blocks + as_uint(block[WIDE_CLIPS(WIDE_LANES)]) + CLIP_WORDS * popcount(clipped & ((1u << lane) - 1u));
+#endif
       for (uint groups = groups_of[lane]; groups != 0u; groups &= groups - 1u)
         hit_group(p, popcount((groups & (0u - groups)) - 1u), centre, block[WIDE_RADIUS(WIDE_LANES) + lane], normal,
-                  first + lane, best);
+                  clip, first + lane, best);
     }
 }
 
@@ -216,7 +244,7 @@ static inline void trace_packet(POOL_PARAMS, const RayPacket* p, PacketHits* bes
       push_children(&walk, node_pool + current, met, t_enter, bounds.octant);
       continue;
     }
-    FOR_BLOCKS_OF_LEAF(current, block, { hit_block_by_packet(block, p, &bounds, farthest, best); })
+    FOR_BLOCKS_OF_LEAF(current, block, { hit_block_by_packet(block_pool, block, p, &bounds, farthest, best); })
     farthest = farthest_hit(best);
   }
 }

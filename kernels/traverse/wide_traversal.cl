@@ -120,9 +120,10 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_u index = h.first + LANE_NUMBERS;
-      const lanes_i nearer = h.inside & (h.t > ray.t_min) &
-                             ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))))
-                             AND_SIDE_COUNTS(cosines_of_lanes(&h, ray.direction));
+      const lanes_i met = h.inside & (h.t > ray.t_min) &
+                          ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))))
+                          AND_SIDE_COUNTS(cosines_of_lanes(&h, ray.direction));
+      const lanes_i nearer = UNCLIPPED_LANES(block, ray, h, met);
       if (any_lane(nearer)) {
         const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
         best.t = smallest_lane(t);
@@ -145,7 +146,7 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
       const lanes_i met = h.inside & (h.t > ray.t_min) &
                           ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
       if (any_lane(met)) {
-        const lanes_i nearer = met & ~LANES_OF_ORIGIN(&h, met);
+        const lanes_i nearer = UNCLIPPED_LANES(block, ray, h, met & ~LANES_OF_ORIGIN(&h, met));
         if (any_lane(nearer)) {
           const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
           best.t = smallest_lane(t);
@@ -167,10 +168,13 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
       const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
-      if (any_lane(hit) &&
-          any_lane(hit & ~discs_of_end(ends.origin_normal, ends.origin_radius, at_origin, ray.direction, h.t, &h) &
-                   ~discs_of_end(ends.target_normal, ends.target_radius, at_target, -ray.direction, ray.t_max - h.t, &h)))
-        return true;
+      if (any_lane(hit)) {
+        const lanes_i blocking =
+            hit & ~discs_of_end(ends.origin_normal, ends.origin_radius, at_origin, ray.direction, h.t, &h) &
+            ~discs_of_end(ends.target_normal, ends.target_radius, at_target, -ray.direction, ray.t_max - h.t, &h);
+        if (any_lane(UNCLIPPED_LANES(block, ray, h, blocking)))
+          return true;
+      }
     })
   }
   return false;
@@ -183,8 +187,9 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
-      const lanes_i counts = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
-                             as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
+      const lanes_i met = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
+                          as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
+      const lanes_i counts = UNCLIPPED_LANES(block, ray, h, met);
       if (any_lane(counts)) {
         float t_of[WIDE_LANES];
         float q_of[WIDE_LANES];

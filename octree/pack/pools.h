@@ -33,4 +33,9 @@ inline const Pool<std::uint32_t>& source_of(const OctreePools& pools) {
   return std::visit([](const auto& p) -> const Pool<std::uint32_t>& { return p.source; }, pools);
 }
 
+/// Those of the points of the pool that end at borders.
+inline const SplatClips& clips_of(const OctreePools& pools) {
+  return std::visit([](const auto& p) -> const SplatClips& { return p.clips; }, pools);
+}
+
 } // namespace pointgi

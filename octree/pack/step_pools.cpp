@@ -1,6 +1,7 @@
 #include "octree/pack/step_pools.h"
 #include "octree/parallel.h"
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -11,8 +12,9 @@ namespace {
 /// Lays nodes and leaves out along the curve on one thread, then copies what they list on all.
 class Packer {
 public:
-  Packer(View<Splat> splats, const Tree& tree, StepPools& pools)
-      : splats_(splats), tree_(tree), curve_(tree.options.order, tree.options.axis_bits), pools_(pools) {}
+  Packer(View<Splat> splats, const Tree& tree, const SplatClips& clips, StepPools& pools)
+      : splats_(splats), tree_(tree), clips_(clips), curve_(tree.options.order, tree.options.axis_bits), pools_(pools),
+        next_entry_(pools.first_entry(clips.size(), splats.size)) {}
 
   void run() {
     pools_.nodes.resize(tree_.nodes.size());
@@ -32,6 +34,7 @@ public:
         pools_.points[p] = splats_[tree_.order[p]];
       }
     });
+    if (!clips_.empty()) write_clips();
   }
 
 private:
@@ -66,25 +69,41 @@ private:
     std::copy_n(tree_.extra.begin() + leaf.node->first_extra, leaf.node->extra_count, entry);
   }
 
+  /// The entries before the first leaf's.
+  void write_clips() {
+    const std::vector<std::uint32_t> clip_of = clip_of_each(clips_, splats_.size);
+    auto at = static_cast<std::uint32_t>(splats_.size);
+    for (std::uint32_t p = 0; p < splats_.size; ++p) {
+      const std::uint32_t k = clip_of[tree_.order[p]];
+      pools_.begin_end[p] = k == no_clip ? 0u : at;
+      if (k == no_clip) continue;
+      std::memcpy(&pools_.begin_end[at], &clips_[k].clip, sizeof(DiscClip));
+      at += CLIP_WORDS;
+      pools_.clips.push_back({p, clips_[k].clip});
+    }
+  }
+
   View<Splat> splats_;
   const Tree& tree_;
+  const SplatClips& clips_;
   Curve curve_;
   StepPools& pools_;
   std::vector<Leaf> leaves_; ///< along the curve
-  std::uint32_t next_node_ = 1, next_entry_ = 0;
+  std::uint32_t next_node_ = 1, next_entry_;
 };
 
 } // namespace
 
-StepPools pack_step(View<Splat> splats, const Tree& tree) {
-  if (tree.extra.size() + tree.nodes.size() >= std::numeric_limits<std::uint32_t>::max())
+StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips) {
+  const std::size_t before = StepPools::first_entry(clips.size(), splats.size);
+  if (tree.extra.size() + tree.nodes.size() + before >= std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("octree: the Begin-End pool outgrows 32-bit addresses; raise the leaf capacity");
   StepPools pools;
   pools.axis_bits = tree.options.axis_bits;
   pools.order = tree.options.order;
   pools.depth = tree.depth;
   pools.extra_splats = tree.extra.size();
-  Packer(splats, tree, pools).run();
+  Packer(splats, tree, clips, pools).run();
   return pools;
 }
 

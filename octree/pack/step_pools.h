@@ -10,11 +10,17 @@ struct StepPools {
   Pool<std::uint32_t> begin_end;
   Pool<OctreePoint> points;   ///< along the curve
   Pool<std::uint32_t> source; ///< input index of each point of the pool
+  SplatClips clips;           ///< of the points of the pool
   unsigned axis_bits = 1;
   PointOrder order = PointOrder::morton; ///< of nodes, Begin-End entries and points
   unsigned depth = 0;
   std::size_t leaves = 0;
   std::size_t extra_splats = 0;
+
+  /// Where the first leaf's entry stands in the Begin-End pool: behind the clips, if there are any.
+  static std::uint32_t first_entry(std::size_t clips, std::size_t points) {
+    return clips == 0 ? 0u : static_cast<std::uint32_t>(points + CLIP_WORDS * clips);
+  }
 
   std::size_t bytes() const {
     return nodes.size() * sizeof(OctreeNode) + begin_end.size() * sizeof(std::uint32_t) +
@@ -22,9 +28,9 @@ struct StepPools {
   }
 };
 
-/// Packs a tree over the same splats, on all cores; the same pools for any number of them. Throws std::length_error
+/// Packs a tree over the same splats, of which some end at borders, on all cores; the same pools for any number of them. Throws std::length_error
 /// when the Begin-End pool outgrows 32-bit addresses.
-StepPools pack_step(View<Splat> splats, const Tree& tree);
+StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips = {});
 
 /// Checks every invariant that the traversal relies on: types, child blocks inside the pool and each used once, levels,
 /// own points inside their cell and each in one leaf, Begin-End entries along the curve and closed, every leaf that a

@@ -2,6 +2,7 @@
 #include "octree/pack/step_pools.h"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -12,7 +13,8 @@ namespace {
 class Verifier {
 public:
   explicit Verifier(const StepPools& pools)
-      : pools_(pools), curve_(pools.order, pools.axis_bits), reached_(pools.nodes.size(), false) {}
+      : pools_(pools), curve_(pools.order, pools.axis_bits), reached_(pools.nodes.size(), false),
+        next_entry_(StepPools::first_entry(pools.clips.size(), pools.points.size())) {}
 
   void run() {
     if (pools_.nodes.empty() || pools_.begin_end.empty()) fail(0, "the pools are empty");
@@ -21,6 +23,9 @@ public:
       fail(static_cast<std::size_t>(std::find(reached_.begin(), reached_.end(), false) - reached_.begin()),
            "is nobody's child");
     if (next_point_ != pools_.points.size()) fail(0, "the leaves do not own every point");
+    for (const ClippedSplat& c : pools_.clips)
+      if (std::memcmp(&pools_.begin_end[pools_.begin_end[c.splat]], &c.clip, sizeof c.clip) != 0)
+        fail(0, "has a clip that differs from its splat's");
     if (next_entry_ + 1 != pools_.begin_end.size() || pools_.begin_end.back() != pools_.points.size())
       fail(0, "the Begin-End pool does not end with the number of points");
   }
@@ -120,7 +125,7 @@ private:
   Curve curve_;
   std::vector<bool> reached_;
   std::uint32_t next_point_ = 0;
-  std::uint32_t next_entry_ = 0;
+  std::uint32_t next_entry_;
 };
 
 } // namespace

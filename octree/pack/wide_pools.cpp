@@ -35,8 +35,9 @@ struct Range {
 /// Lays nodes and leaves out along the curve on one thread, which is little work, then fills the pools on all.
 class Packer {
 public:
-  Packer(View<Splat> splats, const Tree& tree, WidePools& pools)
-      : splats_(splats), tree_(tree), curve_(tree.options.order, tree.options.axis_bits), pools_(pools) {}
+  Packer(View<Splat> splats, const Tree& tree, const SplatClips& clips, WidePools& pools)
+      : splats_(splats), tree_(tree), clips_(clips), curve_(tree.options.order, tree.options.axis_bits),
+        pools_(pools) {}
 
   void run() {
     const TreeNode& root = tree_.nodes[0];
@@ -48,7 +49,7 @@ public:
     pools_.depth = static_cast<unsigned>(levels_.size());
     pools_.leaves = leaves_.size();
     pools_.nodes.resize(children_.size());
-    pools_.blocks.resize(blocks_ * WIDE_BLOCK_WORDS(pools_.lanes));
+    pools_.blocks.resize(blocks_ * std::size_t{WIDE_BLOCK_WORDS(pools_.lanes)} + CLIP_WORDS * clips_.size());
     pools_.points.resize(splats_.size);
     pools_.source.resize(splats_.size);
     parallel_ranges(leaves_.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -61,6 +62,7 @@ public:
         for (std::size_t i = begin; i < end; ++i)
           fill_node(levels_[level][i]);
       });
+    if (!clips_.empty()) write_clips();
   }
 
 private:
@@ -148,6 +150,30 @@ private:
     set_box(pools_.nodes[leaf.node], leaf.child, box);
   }
 
+  /// Behind the blocks, in the order of the points, each block told of its own.
+  void write_clips() {
+    const std::vector<std::uint32_t> clip_of = clip_of_each(clips_, splats_.size);
+    std::size_t at = blocks_ * std::size_t{WIDE_BLOCK_WORDS(pools_.lanes)};
+    if (pools_.blocks.size() > std::numeric_limits<std::uint32_t>::max())
+      throw std::length_error("octree: more leaf blocks and clips than 32 bits count; raise the leaf capacity");
+    std::uint32_t point = 0;
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      float* block = &pools_.blocks[b * WIDE_BLOCK_WORDS(pools_.lanes)];
+      const auto first = static_cast<std::uint32_t>(at);
+      pg_uint clipped = 0;
+      for (unsigned lane = 0; lane < pools_.lanes && block[WIDE_RADIUS(pools_.lanes) + lane] >= 0.0f; ++lane, ++point) {
+        const std::uint32_t k = clip_of[pools_.source[point]];
+        if (k == no_clip) continue;
+        clipped |= 1u << lane;
+        std::memcpy(&pools_.blocks[at], &clips_[k].clip, sizeof(DiscClip));
+        at += CLIP_WORDS;
+        pools_.clips.push_back({point, clips_[k].clip});
+      }
+      std::memcpy(block + WIDE_CLIPPED(pools_.lanes), &clipped, sizeof clipped);
+      std::memcpy(block + WIDE_CLIPS(pools_.lanes), &first, sizeof first);
+    }
+  }
+
   static void set_box(WideNode& node, unsigned c, const Box& box) {
     for (int a = 0; a < 3; ++a) {
       node.low[a][c] = box.low[a];
@@ -181,6 +207,7 @@ private:
 
   View<Splat> splats_;
   const Tree& tree_;
+  const SplatClips& clips_;
   Curve curve_;
   WidePools& pools_;
   std::vector<std::array<std::uint32_t, WIDE_CHILDREN>> children_; ///< of each node, as WideNode::child
@@ -200,6 +227,7 @@ public:
     std::fill_n(all.high, 3, far);
     visit(0, all, 0, Curve::start);
     if (next_point_ != pools_.points.size()) fail("the leaves do not hold every point");
+    if (next_clip_ != pools_.clips.size()) fail("the blocks do not know every clip");
   }
 
 private:
@@ -236,17 +264,29 @@ private:
       const float* block = &pools_.blocks[b * WIDE_BLOCK_WORDS(lanes)];
       std::uint32_t index;
       std::memcpy(&index, block + WIDE_FIRST(lanes), sizeof index);
-      pg_uint sheets;
+      pg_uint sheets, clipped, clips;
       std::memcpy(&sheets, block + WIDE_SHEETS(lanes), sizeof sheets);
+      std::memcpy(&clipped, block + WIDE_CLIPPED(lanes), sizeof clipped);
+      std::memcpy(&clips, block + WIDE_CLIPS(lanes), sizeof clips);
+      const std::size_t first_clip = next_clip_;
       for (unsigned lane = 0; lane < lanes; ++lane) {
         if (block[WIDE_RADIUS(lanes) + lane] < 0.0f) continue;
         if (index + lane != next_point_ || next_point_ >= pools_.points.size())
           fail("block " + std::to_string(b) + " does not follow the points along the curve");
         if ((sheets >> lane & 1u) != (is_sheet(pools_.points[next_point_]) ? 1u : 0u))
           fail("block " + std::to_string(b) + " does not know which of its splats are sheets");
+        if ((clipped >> lane & 1u) != 0u) check_clip(clips + CLIP_WORDS * (next_clip_ - first_clip), b);
         check_splat(pools_.points[next_point_++], block, lane, box);
       }
     }
+  }
+
+  /// The next clip of the list is that of the next point, and stands at `word`.
+  void check_clip(std::size_t word, std::uint32_t block) {
+    if (next_clip_ >= pools_.clips.size() || pools_.clips[next_clip_].splat != next_point_ ||
+        std::memcmp(&pools_.blocks[word], &pools_.clips[next_clip_].clip, sizeof(DiscClip)) != 0)
+      fail("block " + std::to_string(block) + " has a clip that is not its splat's");
+    ++next_clip_;
   }
 
   void check_splat(const OctreePoint& point, const float* block, unsigned lane, const Box& box) const {
@@ -263,19 +303,19 @@ private:
 
   const WidePools& pools_;
   Curve curve_;
-  std::size_t next_point_ = 0;
+  std::size_t next_point_ = 0, next_clip_ = 0;
 };
 
 } // namespace
 
-WidePools pack_wide(View<Splat> splats, const Tree& tree, unsigned lanes) {
+WidePools pack_wide(View<Splat> splats, const Tree& tree, unsigned lanes, const SplatClips& clips) {
   if (tree.options.listing != Listing::centres || tree.options.axis_bits != 1)
     throw std::invalid_argument("octree: the wide form takes a tree with N = 2 that lists centres");
   if (lanes != 8 && lanes != 16) throw std::invalid_argument("octree: the wide form has 8 or 16 lanes");
   WidePools pools;
   pools.lanes = lanes;
   pools.order = tree.options.order;
-  Packer(splats, tree, pools).run();
+  Packer(splats, tree, clips, pools).run();
   return pools;
 }
 

@@ -2,6 +2,7 @@
 #include "host/tune/profile.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -14,6 +15,7 @@ struct Ball {
   Scene scene;
   Frame frame;
   std::vector<Splat> splats = sphere_splats(900);
+  SplatClips clips;
 
   Ball() {
     for (Splat small : sphere_splats(300, 0.1f)) {
@@ -30,7 +32,7 @@ struct Ball {
   }
 
   ProfileRequest request() const {
-    ProfileRequest request{scene, frame, splats, {}};
+    ProfileRequest request{scene, frame, splats, clips, {}};
     request.rounds = 1;
     request.launch_seconds = 1e-3;
     return request;
@@ -56,6 +58,22 @@ Profile run(
 }
 
 } // namespace
+
+TEST_CASE("a profile of splats that end at borders finds nothing wrong with the variants") {
+  Ball ball;
+  for (std::uint32_t i = 0; i < ball.splats.size(); i += 2) {
+    const Eigen::Vector3f across = Eigen::Map<const Eigen::Vector3f>(ball.splats[i].normal).unitOrthogonal();
+    const float r = ball.splats[i].radius;
+    ball.clips.push_back({i, {{{{across[0], across[1], across[2]}, -0.3f * r, 0.6f * r}}}});
+  }
+  ProfileRequest request = ball.request();
+  request.variants = some_variants();
+  for (const VariantProfile& v : run(request).variants) {
+    CAPTURE(name_of(v.variant));
+    CHECK(v.variant.clips);
+    CHECK_FALSE(v.wrong());
+  }
+}
 
 TEST_CASE("a profile measures the reference and all that is asked for, and finds nothing wrong with them") {
   const Ball ball;

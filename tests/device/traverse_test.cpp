@@ -6,6 +6,7 @@
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include "tests/support/rays.h"
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -21,12 +22,41 @@ struct Other {
   std::vector<cl_float4> surfaces; ///< two a ray: normal and t, albedo and 1
 };
 
+/// Two strips across each other on each third splat, of any width.
+SplatClips random_clips(const std::vector<Splat>& splats, unsigned seed) {
+  std::mt19937 g(seed);
+  std::uniform_real_distribution<float> share(0.0f, 1.3f), turn(0.0f, 6.28f);
+  SplatClips clips;
+  for (std::uint32_t i = 0; i < splats.size(); i += 3) {
+    const Eigen::Vector3f normal = Eigen::Map<const Eigen::Vector3f>(splats[i].normal);
+    const Eigen::Vector3f u = Eigen::AngleAxisf(turn(g), normal) * normal.unitOrthogonal(), v = normal.cross(u);
+    ClippedSplat clipped{i, {}};
+    const Eigen::Vector3f axes[CLIP_STRIPS] = {u, i % 2 == 0 ? v : Eigen::Vector3f::Zero()};
+    for (int k = 0; k < CLIP_STRIPS; ++k) {
+      std::copy_n(axes[k].data(), 3, clipped.clip.strip[k].axis);
+      clipped.clip.strip[k].low = -share(g) * splats[i].radius;
+      clipped.clip.strip[k].high = share(g) * splats[i].radius;
+    }
+    clips.push_back(clipped);
+  }
+  return clips;
+}
+
+/// A clip for each splat; zero, which cuts nothing off, where it has none.
+std::vector<DiscClip> of_all(const SplatClips& clips, const std::vector<Splat>& splats) {
+  std::vector<DiscClip> all(splats.size());
+  for (const ClippedSplat& c : clips)
+    all[c.splat] = c.clip;
+  return all;
+}
+
 /// Nearest hits through the octree, one ray a work-item whatever the variant's grouping; `splat` is the index into
 /// `splats`.
 std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
-                                  const TraversalVariant& variant, Other* other = nullptr,
-                                  Backfaces backfaces = Backfaces::shade) {
-  const OctreePools pools = build_pools(splats, variant);
+                                  TraversalVariant variant, Other* other = nullptr,
+                                  Backfaces backfaces = Backfaces::shade, const SplatClips& clips = {}) {
+  variant.clips = !clips.empty();
+  const OctreePools pools = build_pools(splats, variant, clips);
   std::visit([](const auto& p) { verify(p); }, pools);
   Session& device = session();
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
@@ -56,15 +86,21 @@ std::vector<RayAnswer> trace_tree(const std::vector<Splat>& splats, const std::v
 
 /// The same by a linear scan over all splats, on the device.
 std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
-                                 Backfaces backfaces = Backfaces::shade) {
+                                 Backfaces backfaces = Backfaces::shade, const SplatClips& clips = {}) {
   Session& device = session();
   const auto points = device.upload(splats);
   const auto queries = device.upload(rays);
   const auto answers = device.allocate<RayAnswer>(rays.size());
-  cl::Kernel kernel = device.kernel("test/brute_force.cl", backfaces == Backfaces::see_through ? "-D FRONTS_ONLY" : "",
-                                    "brute_force_closest");
-  device.launch(kernel, LaunchShape::line(rays.size()), points, static_cast<cl_uint>(splats.size()), queries, answers,
-                static_cast<cl_uint>(rays.size()));
+  const std::string options = std::string(backfaces == Backfaces::see_through ? "-D FRONTS_ONLY" : "") +
+                              (clips.empty() ? "" : " -D HAS_CLIPS");
+  cl::Kernel kernel = device.kernel("test/brute_force.cl", options, "brute_force_closest");
+  const auto count = static_cast<cl_uint>(rays.size());
+  const LaunchShape shape = LaunchShape::line(rays.size());
+  const auto splat_count = static_cast<cl_uint>(splats.size());
+  if (clips.empty())
+    device.launch(kernel, shape, points, splat_count, queries, answers, count);
+  else
+    device.launch(kernel, shape, points, splat_count, queries, answers, count, device.upload(of_all(clips, splats)));
   return device.download(answers, rays.size());
 }
 
@@ -260,8 +296,10 @@ std::vector<RayQuery> bundles(const std::vector<Splat>& splats) {
 
 /// Answers of packets of PACKET_RAYS rays each.
 std::vector<RayAnswer> trace_in_packets(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,
-                                        const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade) {
-  const OctreePools pools = build_pools(splats, variant);
+                                        TraversalVariant variant, Backfaces backfaces = Backfaces::shade,
+                                        const SplatClips& clips = {}) {
+  variant.clips = !clips.empty();
+  const OctreePools pools = build_pools(splats, variant, clips);
   Session& device = session();
   const DevicePools on_device = upload_pools(device, pools, variant.storage);
   const auto queries = device.upload(packets_of(rays));
@@ -314,5 +352,36 @@ TEST_CASE("where backs are seen through, every form and grouping finds the neare
     CHECK(differences(trace_tree(splats, rays, variant, nullptr, Backfaces::see_through), truth) == 0);
     if (variant.grouping == RayGrouping::packet)
       CHECK(differences(trace_in_packets(splats, in_bundles, variant, Backfaces::see_through), truth_of_bundles) == 0);
+  }
+}
+
+TEST_CASE("every form and grouping meets a clipped disc where a linear scan does") {
+  const bool sheets = GENERATE(false, true);
+  const auto splats = sheets ? sheet_splats(mixed_splats()) : mixed_splats();
+  const SplatClips clips = random_clips(splats, 71);
+  const auto rays = hard_rays(splats, 100'003, 73);
+  const auto in_bundles = bundles(splats);
+  const auto truth = trace_all(splats, rays, Backfaces::shade, clips);
+  const auto truth_of_bundles = trace_all(splats, in_bundles, Backfaces::shade, clips);
+  CHECK(differences(trace_all(splats, rays), truth) > rays.size() / 50); // it does make a difference
+  std::set<std::string> seen;
+  for (const TraversalVariant& variant : valid_variants()) {
+    CAPTURE(name_of(variant));
+    if (variant.grouping == RayGrouping::packet) {
+      CHECK(differences(trace_in_packets(splats, in_bundles, variant, Backfaces::shade, clips), truth_of_bundles) == 0);
+      continue;
+    }
+    if (!seen.insert(trace_program(variant).options + name_of(variant.order)).second) continue;
+    Other other;
+    CHECK(differences(trace_tree(splats, rays, variant, &other, Backfaces::shade, clips), truth) == 0);
+    std::size_t wrong = 0, unblended = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const bool hit = truth[i].splat != NO_SPLAT;
+      wrong += (other.blocked[i] != 0) != hit;
+      unblended += hit && other.surfaces[2 * i + 1].s[3] == 0.0f;
+    }
+    CHECK(wrong == 0);
+    // A ray that meets the backs of rims alone goes on past them (kernels/surface/rims.cl).
+    CHECK(unblended <= rays.size() / 20);
   }
 }

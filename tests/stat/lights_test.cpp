@@ -327,7 +327,7 @@ TEST_CASE(
   const LightScene lights;
   std::vector<Emitter> specular;
   for (std::uint32_t p = 0; p < points_of(lights.octree).size(); ++p)
-    if (points_of(lights.octree)[p].material >= static_cast<float>(mirror)) specular.push_back({p, 0.0f});
+    if (points_of(lights.octree)[p].material >= static_cast<float>(mirror)) specular.push_back({p, 0.0f, {}});
   REQUIRE(specular.size() == 8);
   const auto is_glass = [&](const Emitter& e) { return lights.point(e).material == static_cast<float>(glass); };
   const auto weight = [&](const Emitter& e) {

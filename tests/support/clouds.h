@@ -34,6 +34,14 @@ inline std::vector<Splat> random_splats(std::size_t count, unsigned seed) {
   return splats;
 }
 
+/// A clip on each fifth of `count` splats, whose first strip ends at the splat's number.
+inline SplatClips numbered_clips(std::size_t count) {
+  SplatClips clips;
+  for (std::uint32_t i = 0; i < count; i += 5)
+    clips.push_back({i, {{{{1.0f, 0.0f, 0.0f}, -0.5f, static_cast<float>(i)}, {}}}});
+  return clips;
+}
+
 /// A sphere of overlapping discs about (0.5, 0.5, 0.5).
 inline std::vector<Splat> sphere_splats(std::size_t count, float radius = 0.3f) {
   std::vector<Splat> splats;

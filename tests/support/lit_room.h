@@ -86,7 +86,7 @@ private:
     for (int c = 0; c < 3; ++c)
       light.materials[1].emission[c] = 10.0f;
     for (std::uint32_t i = 0; i < points.size(); ++i)
-      if (points[i].material == 1.0f) light.emitters.push_back({i, 0.0f});
+      if (points[i].material == 1.0f) light.emitters.push_back({i, 0.0f, {}});
     for (std::size_t k = 0; k < light.emitters.size(); ++k) // all of one size
       light.emitters[k].cumulative = static_cast<float>(k + 1) / static_cast<float>(light.emitters.size());
     light.params.emitters = static_cast<pg_uint>(light.emitters.size());

@@ -51,7 +51,7 @@ void add_lamp(Discs& scene, PhotonSources& sources, float y, float facing) {
   lamp.position[1] = y;
   lamp.normal[1] = facing;
   lamp.area = 0.01f;
-  sources.emitters.push_back({static_cast<pg_uint>(scene.points.size()), 1.0f});
+  sources.emitters.push_back({static_cast<pg_uint>(scene.points.size()), 1.0f, {}});
   sources.radiance.push_back({5.0f, 5.0f, 5.0f, 0.0f});
   scene.points.push_back(lamp);
   scene.leaves.leaf_of.push_back(NO_PHOTON_LEAF);

@@ -149,7 +149,23 @@ PointCloud sampled(const Known& shape, double spacing) {
   return sample_shape(settings);
 }
 
-/// Whether a ray through `point` along `ray` meets splat i within its radius, near the point.
+/// A disc shape ends at a polygon, whose sides lie up to this much inside its rim and its corners as much outside, in
+/// units of its splats' radii.
+constexpr double polygon_slack = 0.05;
+
+/// Whether a place on splat i, `off` from its centre, is inside its borders.
+bool is_inside(const PointCloud& cloud, std::size_t i, const Vector3d& off) {
+  const auto at = std::lower_bound(cloud.clipped.begin(), cloud.clipped.end(), i,
+                                   [](const ClippedPoint& c, std::size_t point) { return c.point < point; });
+  if (at == cloud.clipped.end() || at->point != i) return true;
+  const double slack = polygon_slack * cloud.radius[i];
+  return std::all_of(at->clip.strip.begin(), at->clip.strip.end(), [&](const ClipStrips::Strip& strip) {
+    const double along = strip.axis.dot(off);
+    return along >= strip.low - slack && along <= strip.high + slack;
+  });
+}
+
+/// Whether a ray through `point` along `ray` meets splat i within its radius and borders, near the point.
 bool covers(const PointCloud& cloud, std::size_t i, const Vector3d& point, const Vector3d& ray) {
   const Vector3d normal = cloud.normal[i].cast<double>();
   const Vector3d to_centre = cloud.position[i] - point;
@@ -157,7 +173,7 @@ bool covers(const PointCloud& cloud, std::size_t i, const Vector3d& point, const
   const double cosine = normal.dot(ray);
   if (cosine < 0.5 || to_centre.norm() > 2 * radius) return false; // the far side, or another face
   const Vector3d hit = point + normal.dot(to_centre) / cosine * ray;
-  return (hit - cloud.position[i]).norm() <= radius;
+  return (hit - cloud.position[i]).norm() <= radius && is_inside(cloud, i, hit - cloud.position[i]);
 }
 
 const double fractions[] = {0.5, 0.21, 0.06};
@@ -213,6 +229,48 @@ TEST_CASE("no point of a shape is left uncovered", "[scene]") {
         holes += !covered;
       }
       CHECK(holes == 0);
+    }
+}
+
+TEST_CASE("no splat of a shape reaches past its borders, and every one that would is clipped", "[scene]") {
+  const QuadShape skewed{{1, 2, 3}, {2, 0, 0}, {0.9, 1.4, 0.1}}, strip{{0, 0, 0}, {5, 0, 0}, {0, 0.02, 0}};
+  const DiscShape disc{{0, 0, 0}, {0, 0, 1}, 1.0};
+  const CylinderShape tube{{0, 0, 0}, {0, 0, 2}, 0.5, false};
+  const auto quad_excess = [](const QuadShape& quad) {
+    return [quad](const Vector3d& p) { // how far outside, world units
+      const Vector3d n = quad.edge_u.cross(quad.edge_v).normalized();
+      const Vector3d across_u = quad.edge_v.cross(n).normalized(), across_v = n.cross(quad.edge_u).normalized();
+      const double u = across_u.dot(p - quad.corner), v = across_v.dot(p - quad.corner);
+      return std::max({-u, u - across_u.dot(quad.edge_u), -v, v - across_v.dot(quad.edge_v)});
+    };
+  };
+  struct Case {
+    ShapeGeometry geometry;
+    std::function<double(const Vector3d&)> excess;
+  };
+  const std::vector<Case> cases = {{skewed, quad_excess(skewed)},
+                                   {strip, quad_excess(strip)},
+                                   {disc, [](const Vector3d& p) { return p.norm() - 1.0; }},
+                                   {tube, [](const Vector3d& p) { return std::max(-p.z(), p.z() - 2.0); }}};
+  Random random(20261129);
+  for (const Case& c : cases)
+    for (const double spacing : {0.5, 0.1, 0.03}) {
+      const PointCloud cloud = sample_shape({c.geometry, spacing, "m", {}});
+      double farthest = 0;
+      std::size_t cut = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        for (int draw = 0; draw < 20; ++draw) {
+          const Vector3d across = cloud.normal[i].cast<double>().cross(direction(random)).normalized();
+          const Vector3d off = std::sqrt(uniform(random)) * cloud.radius[i] * across;
+          const double excess = c.excess(cloud.position[i] + off) / cloud.radius[i];
+          if (is_inside(cloud, i, off))
+            farthest = std::max(farthest, excess);
+          else
+            ++cut;
+        }
+      INFO("shape " << &c - cases.data() << ", spacing " << spacing);
+      CHECK(farthest < 2 * polygon_slack);
+      CHECK(cut > 0);
     }
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 StepPools sound_pools() {
   const auto splats = sphere_splats(600);
-  return pack_step(splats, build_tree(splats, {1, 8, 21}));
+  return pack_step(splats, build_tree(splats, {1, 8, 21}), numbered_clips(600));
 }
 
 std::size_t first_of_type(const StepPools& pools, unsigned type) {
@@ -25,10 +25,22 @@ TEST_CASE("the verifier accepts what the packer makes") {
   CHECK_NOTHROW(verify(sound_pools()));
 }
 
+TEST_CASE("the Begin-End pool knows the borders of the splats, wherever these come to lie") {
+  const StepPools pools = sound_pools();
+  REQUIRE(pools.clips.size() == 120);
+  for (const ClippedSplat& c : pools.clips)
+    CHECK(c.clip.strip[0].high == static_cast<float>(pools.source[c.splat]));
+  for (std::size_t i = 0; i < pools.points.size(); ++i)
+    CHECK((pools.begin_end[i] == 0) == (pools.source[i] % 5 != 0));
+}
+
 TEST_CASE("the verifier finds each planted fault") {
   StepPools pools = sound_pools();
   const std::size_t leaf = first_of_type(pools, NODE_LEAF), empty = first_of_type(pools, NODE_EMPTY);
   OctreeNode& node = pools.nodes[leaf];
+  SECTION("a clip of another point") {
+    pools.begin_end[pools.clips[3].splat] = pools.begin_end[pools.clips[4].splat];
+  }
   SECTION("a lost extra splat") {
     pools.begin_end[node.address + 1] = pools.begin_end[node.address + 2];
   }

@@ -8,12 +8,12 @@ using namespace pointgi::test;
 namespace {
 
 WidePools pack(const std::vector<Splat>& splats, unsigned leaf_capacity, unsigned lanes,
-               PointOrder order = PointOrder::morton) {
+               PointOrder order = PointOrder::morton, const SplatClips& clips = {}) {
   TreeOptions options;
   options.order = order;
   options.leaf_capacity = leaf_capacity;
   options.listing = Listing::centres;
-  return pack_wide(splats, build_tree(splats, options), lanes);
+  return pack_wide(splats, build_tree(splats, options), lanes, clips);
 }
 
 } // namespace
@@ -29,8 +29,27 @@ TEST_CASE("the wide form obeys its invariants") {
       verify(pack(std::vector<Splat>(100'000, make_splat(0.3f, 0.3f, 0.3f, 0, 1, 0, 1e-9f)), capacity, lanes, order)));
 }
 
+TEST_CASE("blocks know the borders of their splats, wherever these come to lie") {
+  const unsigned lanes = GENERATE(8u, 16u);
+  const auto splats = mixed_splats();
+  const SplatClips clips = numbered_clips(splats.size());
+  const WidePools pools = pack(splats, 8, lanes, PointOrder::hilbert, clips);
+  CHECK_NOTHROW(verify(pools));
+  REQUIRE(pools.clips.size() == clips.size());
+  for (const ClippedSplat& c : pools.clips)
+    REQUIRE(c.clip.strip[0].high == static_cast<float>(pools.source[c.splat]));
+  CHECK(pools.blocks.size() ==
+        pack(splats, 8, lanes, PointOrder::hilbert).blocks.size() + CLIP_WORDS * clips.size());
+}
+
 TEST_CASE("the wide form's verifier finds each planted fault") {
-  WidePools pools = pack(sphere_splats(600), 8, 8);
+  WidePools pools = pack(sphere_splats(600), 8, 8, PointOrder::morton, numbered_clips(600));
+  SECTION("a clip that differs") {
+    pools.blocks.back() += 1.0f;
+  }
+  SECTION("a clip of another point") {
+    ++pools.clips[7].splat;
+  }
   SECTION("a box that is too small") {
     pools.nodes[0].high[0][0] -= 0.1f;
   }
