@@ -22,7 +22,7 @@ enum class Structure : std::uint8_t {
 /// Two strips of a splat's plane, across each other, in which its disc counts: what it stands for has a border there.
 struct ClipStrips {
   struct Strip {
-    Eigen::Vector3d axis{0, 0, 0};     ///< unit, across the normal; 0: cuts nothing off
+    Eigen::Vector3d axis{0, 0, 0}; ///< unit, across the normal; 0: cuts nothing off
     double low = -1.0, high = 1.0; ///< along it from the centre, world units; may be infinite
   };
   std::array<Strip, 2> strip;
@@ -49,7 +49,7 @@ struct PointCloud {
   std::vector<std::array<std::uint32_t, 3>> triangle; ///< faces, where the file has any; indices into `position`
   std::vector<Eigen::Vector3d> stations;              ///< positions of scanners; not an attribute of points
   std::vector<ClippedPoint> clipped; ///< of shapes: points that end at borders, ascending; not an attribute
-  bool normals_unsigned = false; ///< `normal` tells the plane of the surface, and either side of it
+  bool normals_unsigned = false;     ///< `normal` tells the plane of the surface, and either side of it
 
   std::size_t size() const { return position.size(); }
 };

@@ -13,8 +13,8 @@ OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant
   options.order = variant.order;
   options.listing = wide ? Listing::centres : Listing::overlaps;
   const Tree tree = build_tree(splats, options);
-  OctreePools pools = wide ? OctreePools(pack_wide(splats, tree, variant.lanes, clips))
-                           : OctreePools(pack_step(splats, tree, clips));
+  OctreePools pools =
+      wide ? OctreePools(pack_wide(splats, tree, variant.lanes, clips)) : OctreePools(pack_step(splats, tree, clips));
 #ifndef NDEBUG
   std::visit([](const auto& p) { verify(p); }, pools);
 #endif

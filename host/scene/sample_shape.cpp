@@ -96,8 +96,8 @@ void sample(const QuadShape& quad, double spacing, Splats& splats) {
   for (double j = 0.5; j < count_v; ++j)
     for (double i = 0.5; i < count_u; ++i) {
       splats.add(quad.corner + i * step_u + j * step_v, normal, radius, area);
-      splats.clip_last({{{{across_u, -i * width_u, (count_u - i) * width_u},
-                          {across_v, -j * width_v, (count_v - j) * width_v}}}});
+      splats.clip_last(
+          {{{{across_u, -i * width_u, (count_u - i) * width_u}, {across_v, -j * width_v, (count_v - j) * width_v}}}});
     }
 }
 
@@ -179,8 +179,9 @@ double count_of(const DiscShape& disc, double spacing) {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-/// One splat in the middle, then concentric rings. The outermost end at a regular polygon of the disc's area, a side each. Inside a ring's cell the
-/// outer corners are the farthest points; inner corners are nearer, as the cell widens outwards.
+/// One splat in the middle, then concentric rings. The outermost end at a regular polygon of the disc's area, a side
+/// each. Inside a ring's cell the outer corners are the farthest points; inner corners are nearer, as the cell widens
+/// outwards.
 void sample(const DiscShape& disc, double spacing, Splats& splats) {
   const double rings = rings_of(disc, spacing);
   const double width = disc.radius / (rings + 0.5);

@@ -23,7 +23,7 @@ struct FileOrder {
 struct PlacedSplats {
   Frame frame;
   std::vector<Splat> splats;
-  SplatClips clips; ///< of the splats that end at borders
+  SplatClips clips;              ///< of the splats that end at borders
   std::vector<std::uint32_t> id; ///< of each splat: its place among the kept points of all clouds and shapes, in order
   std::vector<std::uint32_t> first_ids; ///< id of the first point of each cloud, then of each shape
   std::optional<FileOrder> file_order;  ///< of a scene of one cloud and nothing else, whose points are those of a file

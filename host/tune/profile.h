@@ -25,7 +25,7 @@ struct ProfileRequest {
   const Scene& scene;
   const Frame& frame;
   const std::vector<Splat>& splats;
-  const SplatClips& clips; ///< of these splats
+  const SplatClips& clips;                ///< of these splats
   std::vector<TraversalVariant> variants; ///< the reference is measured whether it is among them or not
   int rounds = 5;                         ///< timed ones; one more before them warms up
   unsigned seed = 1;

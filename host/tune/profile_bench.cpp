@@ -153,7 +153,11 @@ Differences ProfileBench::launch_and_compare(ProfiledKernel kernel, const Traver
 void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
   const std::size_t splats = request_.splats.size();
   const auto points = session_.upload(request_.splats);
-  cl::Kernel scan = session_.kernel("test/brute_force.cl", "", "brute_force_closest");
+  const bool clipped = !request_.clips.empty();
+  cl::Kernel scan = session_.kernel("test/brute_force.cl", clipped ? "-D HAS_CLIPS" : "", "brute_force_closest");
+  std::vector<DiscClip> clip_of_each(clipped ? splats : 0); // zero cuts nothing off
+  for (const ClippedSplat& c : request_.clips)
+    clip_of_each[c.splat] = c.clip;
   for (const ProfiledKernel kernel : {ProfiledKernel::eye, ProfiledKernel::bounced}) {
     const Buffer<RayQuery>& all = kernel == ProfiledKernel::eye ? eye_ : bounced_;
     const std::size_t count = std::min<std::size_t>(std::max<std::size_t>(scan_tests / splats, 256), all.size);
@@ -168,8 +172,12 @@ void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
     const auto rays = session_.upload(some);
     const auto answers = session_.allocate<RayAnswer>(count);
     session_.label_launches("linear scan");
-    session_.launch(scan, LaunchShape::line(count), points, static_cast<cl_uint>(splats), rays, answers,
-                    static_cast<cl_uint>(count));
+    const LaunchShape shape = LaunchShape::line(count);
+    const auto splat_count = static_cast<cl_uint>(splats), ray_count = static_cast<cl_uint>(count);
+    if (clipped)
+      session_.launch(scan, shape, points, splat_count, rays, answers, ray_count, session_.upload(clip_of_each));
+    else
+      session_.launch(scan, shape, points, splat_count, rays, answers, ray_count);
     const Differences d = compare_answers(found, session_.download(answers, count));
     if (d.wrong > 0)
       throw Error(ErrorKind::device, session_.info().name + ": " + name_of(reference) +

@@ -165,8 +165,19 @@ std::vector<ProgramUse> all_programs() {
       v.stepping = Stepping::absolute_delta;
       variants.push_back(v);
     }
+  const auto usual = [](const TraversalVariant& v) {
+    TraversalVariant plain = plain_variant(v.form);
+    plain.clips = v.clips;
+    return build_options(v) == build_options(plain) && !v.fast_math;
+  };
+  for (std::size_t i = 0, count = variants.size(); i < count; ++i)
+    if (usual(variants[i])) { // with borders the usual walks stand for all
+      variants.push_back(variants[i]);
+      variants.back().clips = true;
+    }
   std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true},
-                               {{"test/brute_force.cl", "-D FRONTS_ONLY"}, true, true}};
+                               {{"test/brute_force.cl", "-D FRONTS_ONLY"}, true, true},
+                               {{"test/brute_force.cl", "-D HAS_CLIPS"}, true, true}};
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl"})
     uses.push_back({fmm_program(file), true, true});
@@ -186,7 +197,7 @@ std::vector<ProgramUse> all_programs() {
                              all_material_flags}; // by paths, photons
   for (const TraversalVariant& v : variants) {
     const bool cpu = why_not(v, ideal_device(true)).empty(), gpu = why_not(v, ideal_device(false)).empty();
-    const bool usual_walk = build_options(v) == build_options(plain_variant(v.form)) && !v.fast_math;
+    const bool usual_walk = usual(v);
     const bool usual_group = v.group == WorkGroup{};
     for (const Backfaces backfaces : {Backfaces::shade, Backfaces::see_through}) {
       add(trace_program(v, backfaces), cpu, gpu);

@@ -65,9 +65,9 @@ typedef struct DiscClip {
 #define STRIP_WORDS 5
 #define CLIP_WORDS (CLIP_STRIPS * STRIP_WORDS)
 
-/* Borders that meet reach past each other by this much, root cube units, or rays would get through between them: twice
- * what a ray starts behind its surface. radius: of the disc. */
-#define CLIP_MARGIN(radius) (2.0f * SEGMENT_MARGIN(radius))
+/* Borders that meet reach past each other by this much, root cube units, or rays would get through between them: as far
+ * as a ray starts behind its surface, and what the border's own place is rounded by. radius: of the disc. */
+#define CLIP_MARGIN(radius) (SEGMENT_MARGIN(radius) + 1e-7f)
 
 /* The wide form of the same octree (N = 2): a node keeps the boxes of what its children really hold, radii included, so
  * a splat lies in one leaf only and no cell is listed. Boxes are widened by a little more than a hit's rounding. */

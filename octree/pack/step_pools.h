@@ -28,8 +28,8 @@ struct StepPools {
   }
 };
 
-/// Packs a tree over the same splats, of which some end at borders, on all cores; the same pools for any number of them. Throws std::length_error
-/// when the Begin-End pool outgrows 32-bit addresses.
+/// Packs a tree over the same splats, of which some end at borders, on all cores; the same pools for any number of
+/// them. Throws std::length_error when the Begin-End pool outgrows 32-bit addresses.
 StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips = {});
 
 /// Checks every invariant that the traversal relies on: types, child blocks inside the pool and each used once, levels,

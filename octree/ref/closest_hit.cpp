@@ -1,8 +1,10 @@
 #include "octree/ref/closest_hit.h"
+#include "octree/ref/clip.h"
 
 namespace pointgi {
 
-RayHit closest_hit(View<Splat> splats, const double origin[3], const double direction[3], double t_min, double t_max) {
+RayHit closest_hit(View<Splat> splats, const double origin[3], const double direction[3], double t_min, double t_max,
+                   View<DiscClip> clips) {
   RayHit best{t_max, RayHit::none};
   for (std::size_t i = 0; i < splats.size; ++i) {
     const Splat& s = splats[i];
@@ -14,11 +16,12 @@ RayHit closest_hit(View<Splat> splats, const double origin[3], const double dire
     }
     const double t = along / towards;
     if (!(t > t_min && t < best.t)) continue;
-    double distance2 = 0.0;
+    double distance2 = 0.0, off[3];
     for (int a = 0; a < 3; ++a) {
-      const double d = t * direction[a] - offset[a];
-      distance2 += d * d;
+      off[a] = t * direction[a] - offset[a];
+      distance2 += off[a] * off[a];
     }
+    if (clips.size != 0 && is_clipped_off(clips[i], off)) continue;
     if (distance2 <= static_cast<double>(s.radius) * s.radius) best = {t, static_cast<std::uint32_t>(i)};
   }
   if (best.splat == RayHit::none) best.t = -1.0;

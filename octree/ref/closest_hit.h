@@ -13,7 +13,8 @@ struct RayHit {
 };
 
 /// Nearest hit with t in (t_min, t_max) of the ray origin + t * direction with the splats' discs (method.md §6), in
-/// double precision. O(n).
-RayHit closest_hit(View<Splat> splats, const double origin[3], const double direction[3], double t_min, double t_max);
+/// double precision. `clips`: of each splat, zero where it has none; empty: none has. O(n).
+RayHit closest_hit(View<Splat> splats, const double origin[3], const double direction[3], double t_min, double t_max,
+                   View<DiscClip> clips = {});
 
 } // namespace pointgi

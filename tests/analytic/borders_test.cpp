@@ -1,5 +1,5 @@
-/// Shapes against their true geometry: rays meet them where the quads and boxes are that they stand for, no farther out,
-/// and nothing gets through where they meet.
+/// Shapes against their true geometry: rays meet them where the quads and boxes are that they stand for, no farther
+/// out, and nothing gets through where they meet.
 #include "host/passes/ray_packets.h"
 #include "tests/support/number.h"
 #include "tests/support/photon_scene.h"
@@ -61,8 +61,8 @@ private:
 
 const Vector3d low(-1.0, -0.5, -0.7), high(1.0, 0.5, 0.7);
 
-/// How long a line runs inside the box, widened by `more`: negative where it passes by.
-double inside_box(const Vector3d& from, const Vector3d& to, double more) {
+/// How long a line runs inside the box, widened by `more`: negative where it passes by. `enters`: how far off.
+double inside_box(const Vector3d& from, const Vector3d& to, double more, double* enters = nullptr) {
   const Vector3d d = (to - from).normalized();
   double t0 = -1e9, t1 = 1e9;
   for (int a = 0; a < 3; ++a) {
@@ -70,6 +70,7 @@ double inside_box(const Vector3d& from, const Vector3d& to, double more) {
     t0 = std::max(t0, std::min(x, y));
     t1 = std::min(t1, std::max(x, y));
   }
+  if (enters != nullptr) *enters = t0;
   return t1 - t0;
 }
 
@@ -100,17 +101,21 @@ TEST_CASE("rays meet a box of splats where the box is, up to its edges") {
     rays.push_back(borders.ray(from.back(), to.back()));
   }
   const std::vector<RayAnswer> found = borders.trace(rays);
-  // Of what borders reach past each other (CLIP_MARGIN, 8e-6 of the cube at most) and a ray's direction is rounded by.
+  // Of what borders reach past each other (CLIP_MARGIN, 4e-6 of the cube at most) and a ray's direction is rounded by.
   const double slack = 6e-5;
-  std::size_t missed = 0, past = 0, met = 0;
+  std::size_t missed = 0, past = 0, between = 0, met = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool hit = found[i].splat != NO_SPLAT;
     missed += !hit && inside_box(from[i], to[i], -slack) > 0.0;
     past += hit && inside_box(from[i], to[i], slack) < 0.0;
+    double enters;
+    const double length = inside_box(from[i], to[i], -slack, &enters); // through an edge it would meet the far side
+    between += hit && length > 0.01 && found[i].t * borders.placed.frame.side > enters + 0.5 * length;
     met += hit;
   }
   CHECK(missed == 0);
   CHECK(past == 0);
+  CHECK(between == 0);
   CHECK(met > rays.size() / 3);
 }
 
@@ -139,12 +144,14 @@ TEST_CASE("the edge of a shadow is where the card's edge throws it, at any spaci
     const std::string scene =
         "version = 1\n[render]\nsize = [400, 20]\nspp = 32\n[camera]\nposition = [0.0, 40.0, 0.0]\nlook_at = [0.0, "
         "0.0, 0.0]\nup = [0.0, 0.0, -1.0]\nfov_deg = 0.2\n[radiosity]\nmethod = \"none\"\n[[material]]\nname = "
-        "\"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n[[light]]\ntype = \"directional\"\ndirection = "
+        "\"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n[[material]]\nname = \"black\"\ntype = "
+        "\"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\n"
+        "[[light]]\ntype = \"directional\"\ndirection = "
         "[1.0, -1.0, 0.0]\nirradiance = [4.0, 4.0, 4.0]\n"
         "[[shape]]\ntype = \"quad\"\ncorner = [-3.0, 0.0, -3.0]\nedge_u = [0.0, 0.0, 6.0]\nedge_v = [6.0, 0.0, "
         "0.0]\nmaterial = \"white\"\nspacing = 0.2\n"
-        "[[shape]]\ntype = \"quad\"\ncorner = [-1.83, 0.5, -0.7]\nedge_u = [0.0, 0.0, 1.4]\nedge_v = [1.33, 0.0, "
-        "0.0]\nmaterial = \"white\"\nspacing = " +
+        "[[shape]]\ntype = \"quad\"\ncorner = [-2.83, 0.5, -0.7]\nedge_u = [0.0, 0.0, 1.4]\nedge_v = [2.33, 0.0, "
+        "0.0]\nmaterial = \"black\"\nspacing = " +
         std::to_string(spacing) + "\n";
     const Picture picture = render_text(scene); // its middle is x = 0, where the shadow ends
     const std::vector<float>& r = picture.channels.at("R");
@@ -165,7 +172,8 @@ TEST_CASE("the light of a lamp is that of its true area, at any spacing") {
   for (const char* spacing : {"0.3", "0.09", "0.03"}) {
     CAPTURE(spacing);
     const std::string scene =
-        "version = 1\n[render]\nsize = [16, 12]\nspp = 1024\n[camera]\nposition = [0.5, 3.0, 0.0]\nlook_at = [0.0, 0.0, "
+        "version = 1\n[render]\nsize = [16, 12]\nspp = 1024\n[camera]\nposition = [0.5, 3.0, 0.0]\nlook_at = [0.0, "
+        "0.0, "
         "0.0]\nfov_deg = 5.0\n[radiosity]\nmethod = \"none\"\n[[material]]\nname = \"white\"\ntype = "
         "\"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, "
         "0.0]\nemission = [100.0, 100.0, 100.0]\n[[shape]]\ntype = \"quad\"\ncorner = [-1.0, 0.0, -1.0]\nedge_u = "

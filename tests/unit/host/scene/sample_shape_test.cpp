@@ -269,7 +269,7 @@ TEST_CASE("no splat of a shape reaches past its borders, and every one that woul
             ++cut;
         }
       INFO("shape " << &c - cases.data() << ", spacing " << spacing);
-      CHECK(farthest < 2 * polygon_slack);
+      CHECK(farthest < 3 * polygon_slack); // at the corners of the polygon that a coarse disc is
       CHECK(cut > 0);
     }
 }

@@ -38,8 +38,7 @@ TEST_CASE("blocks know the borders of their splats, wherever these come to lie")
   REQUIRE(pools.clips.size() == clips.size());
   for (const ClippedSplat& c : pools.clips)
     REQUIRE(c.clip.strip[0].high == static_cast<float>(pools.source[c.splat]));
-  CHECK(pools.blocks.size() ==
-        pack(splats, 8, lanes, PointOrder::hilbert).blocks.size() + CLIP_WORDS * clips.size());
+  CHECK(pools.blocks.size() == pack(splats, 8, lanes, PointOrder::hilbert).blocks.size() + CLIP_WORDS * clips.size());
 }
 
 TEST_CASE("the wide form's verifier finds each planted fault") {
