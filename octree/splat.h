@@ -23,6 +23,11 @@ inline bool is_back_of_sheet(const Splat& splat) {
   return SHEET_SIDE(splat.material) == SHEET_BACK;
 }
 
+/// Whether its disc lies in the true surface (shared/octree_types.h).
+inline bool is_flat(const Splat& splat) {
+  return IS_FLAT(splat.material);
+}
+
 static_assert(sizeof(OctreePoint) == 16 * POINT_TEXELS, "a point is three texels");
 static_assert(sizeof(OctreeNode) == 16, "a node is one texel");
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr char magic[8] = {'p', 'g', 'i', 'v', 'm', 'a', 'p', '\n'};
 /// To be raised with every change of the file, and of what make_links makes of one key.
-constexpr std::uint32_t version = 8;
+constexpr std::uint32_t version = 9;
 constexpr std::uint32_t byte_order = 0x01020304u; ///< as this machine writes it
 
 /// A link without the padding of the struct, whose bytes are anybody's.
@@ -181,7 +181,7 @@ VMap kept_or_made_links(const ClusterTree& tree, View<Splat> splats, VisibilityO
   if (!kept.warning.empty()) log_warning("{}", kept.warning);
   if (was_kept != nullptr) *was_kept = kept.map.has_value();
   if (kept.map) return std::move(*kept.map);
-  VMap map = make_links(tree, oracle, options);
+  VMap map = make_links(tree, oracle, options, splats);
   store_vmap(key, map);
   return map;
 }

@@ -13,11 +13,16 @@ namespace pointgi {
 /// What the neighbourhood of a point says about it.
 enum class Structure : std::uint8_t {
   surface,
+  flat,   ///< of a shape whose faces are planes: the disc lies in the true surface
   line,   ///< a cable, a twig
   volume, ///< foliage, or noise through and through
   sheet,  ///< a surface without thickness, both sides of which are meant: leaves, faces stored both ways round
   stray   ///< its neighbours are nearer to one another than it is to them
 };
+
+inline bool is_surface(Structure structure) {
+  return structure == Structure::surface || structure == Structure::flat;
+}
 
 /// Two strips of a splat's plane, across each other, in which its disc counts: what it stands for has a border there.
 struct ClipStrips {

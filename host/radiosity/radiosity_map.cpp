@@ -3,6 +3,7 @@
 #include "host/cache/vmap_cache.h"
 #include "host/cl/kernel_source.h"
 #include "host/passes/visibility.h"
+#include "host/radiosity/parts_of_faces.h"
 #include <cstdio>
 
 namespace pointgi {
@@ -56,9 +57,13 @@ std::uint64_t default_vmap_rays(std::size_t points, const RadiositySettings& set
 }
 
 /// The tree over them, and their places in its order.
-void cluster(const ExchangeScene& scene, RadiosityMap& map) {
+void cluster(Session& session, const ExchangeScene& scene, float step_delta, RadiosityMap& map) {
   const std::vector<std::uint32_t> places = exchanging_points(scene);
-  map.tree = build_clusters(points_at(scene, places), ClusterOptions{});
+  const std::vector<Splat> points = points_at(scene, places);
+  const auto ask = [&](View<Splat> ends, View<Segment> segments) {
+    return DeviceVisibility(session, scene.pools, scene.variant, ends, step_delta).blocked(segments);
+  };
+  map.tree = build_clusters(points, ClusterOptions{}, parts_of_faces(points, ask));
   for (const std::uint32_t k : map.tree.order)
     map.place.push_back(places[k]);
 }
@@ -68,11 +73,11 @@ void cluster(const ExchangeScene& scene, RadiosityMap& map) {
 RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                             const WorkReport& report) {
   RadiosityMap map;
-  cluster(scene, map);
-  if (map.place.empty()) return map;
   const TraversalVariant& variant = scene.variant;
-  DeviceVisibility oracle(session, scene.pools, variant, map.tree.points,
-                          static_cast<float>(variant.step_delta / scene.side));
+  const auto step_delta = static_cast<float>(variant.step_delta / scene.side);
+  cluster(session, scene, step_delta, map);
+  if (map.place.empty()) return map;
+  DeviceVisibility oracle(session, scene.pools, variant, map.tree.points, step_delta);
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.point_samples = static_cast<unsigned>(settings.point_samples);

@@ -263,6 +263,11 @@ std::string text(double number) {
 
 } // namespace
 
+bool has_flat_faces(const ShapeSettings& shape) {
+  return std::holds_alternative<QuadShape>(shape.geometry) || std::holds_alternative<BoxShape>(shape.geometry) ||
+         std::holds_alternative<DiscShape>(shape.geometry);
+}
+
 PointCloud sample_shape(const ShapeSettings& shape, std::size_t max_points) {
   if (!(shape.spacing >= limits::length.low && shape.spacing <= limits::length.high))
     throw Error(ErrorKind::input, shape.place.text() + ": the shape's spacing is " + text(shape.spacing) +

@@ -8,4 +8,7 @@ namespace pointgi {
 /// Deterministic. Throws Error(input) when the spacing would give more than `max_points` splats.
 PointCloud sample_shape(const ShapeSettings& shape, std::size_t max_points = 100'000'000);
 
+/// Whether its faces are planes: a splat's disc then lies in the shape, wherever it is.
+bool has_flat_faces(const ShapeSettings& shape);
+
 } // namespace pointgi

@@ -54,10 +54,6 @@ std::size_t divide_sheets(const Scene& scene, std::vector<Splat>& splats, std::v
     is_back[pair.other] = true;
   }
   if (divided + other_side.size() == 0) return 0;
-  if (scene.materials.size() > SHEET_MATERIALS)
-    throw Error(ErrorKind::input, "two_sided: the scene has " + std::to_string(scene.materials.size()) +
-                                      " materials, and at most " + std::to_string(SHEET_MATERIALS) +
-                                      " go together with sheets; share materials between objects");
   const std::size_t points = splats.size() + divided;
   if (points > std::numeric_limits<std::uint32_t>::max())
     throw Error(ErrorKind::memory, "two_sided: both sides of " + std::to_string(divided) + " splats are " +

@@ -11,7 +11,7 @@ namespace pointgi {
 /// light of its own, and no stage of light needs to know of sheets. `id[i]` goes with splat i; both sides have it.
 /// `structure[id]`: as PointCloud has it; empty: all are surfaces. `sides`: splats that are the two sides of a sheet
 /// already, each with a colour of its own (merge_coincident()). Returns how many sheets there are. Throws Error(memory)
-/// where there would be more points than the octree counts, Error(input) on more materials than SHEET_MATERIALS.
+/// where there would be more points than the octree counts.
 std::size_t divide_sheets(const Scene& scene, std::vector<Splat>& splats, std::vector<std::uint32_t>& id,
                           const std::vector<Structure>& structure = {}, const std::vector<CoincidentSides>& sides = {});
 

@@ -190,6 +190,10 @@ PointCloud load_cloud(const CloudSettings& settings, const Scene& scene, CloudRe
 }
 
 WorldSplats load_splats(const Scene& scene) {
+  if (scene.materials.size() > MOST_MATERIALS)
+    throw Error(ErrorKind::input, "the scene has " + std::to_string(scene.materials.size()) +
+                                      " materials, and at most " + std::to_string(MOST_MATERIALS) +
+                                      " go together; share materials between objects");
   static const std::vector<std::string> no_fields;
   WorldSplats all;
   for (const CloudSettings& settings : scene.clouds) {
@@ -207,7 +211,7 @@ WorldSplats load_splats(const Scene& scene) {
   }
   for (const ShapeSettings& settings : scene.shapes) {
     PointCloud cloud = sample_shape(settings);
-    cloud.structure.assign(cloud.size(), Structure::surface);
+    cloud.structure.assign(cloud.size(), has_flat_faces(settings) ? Structure::flat : Structure::surface);
     const std::uint32_t material = index_of(scene, settings.material);
     refuse_fields(settings, scene.materials[material]);
     set_albedo(cloud, scene.materials[material]);
@@ -254,6 +258,7 @@ std::vector<Splat> place_in_cube(const WorldSplats& splats, const Frame& frame) 
       s.radius = static_cast<float>(cloud.radius[i] / frame.side);
       s.area = static_cast<float>(cloud.area[i] / frame.side / frame.side);
       s.material = static_cast<float>(splats.material[i]);
+      if (!cloud.structure.empty() && cloud.structure[i] == Structure::flat) s.material += FLAT;
     }
   });
   return result;

@@ -10,7 +10,7 @@ constexpr std::size_t enough = 400000;
 constexpr double least_surface = 0.1; // a cloud with less of it has none to speak of
 
 std::size_t surface_points(const PointCloud& cloud) {
-  return static_cast<std::size_t>(std::count(cloud.structure.begin(), cloud.structure.end(), Structure::surface));
+  return static_cast<std::size_t>(std::count_if(cloud.structure.begin(), cloud.structure.end(), is_surface));
 }
 
 void measure(ViewPoints& points) {
@@ -52,7 +52,7 @@ ViewPoints view_points(const PointCloud& cloud, double cut) {
   ViewPoints points;
   std::size_t number = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (chosen && cloud.structure[i] != Structure::surface) continue;
+    if (chosen && !is_surface(cloud.structure[i])) continue;
     if (number++ % step != 0) continue;
     points.position.push_back(cloud.position[i]);
     points.normal.push_back(cloud.normal[i]);

@@ -39,8 +39,8 @@ typedef struct OctreePoint {
   float position[3]; /* texel 0, bytes 0-11: root cube */
   float radius;      /* texel 0, bytes 12-15: splat radius, root cube */
   float normal[3];   /* texel 1, bytes 16-27: unit */
-  float material;    /* texel 1, bytes 28-31: index into the materials, a whole number below SHEET_MATERIALS, plus
-                        SHEET_FRONT or SHEET_BACK where the point is a side of a sheet */
+  float material;    /* texel 1, bytes 28-31: index into the materials, a whole number below MOST_MATERIALS, plus
+                        SHEET_FRONT or SHEET_BACK where the point is a side of a sheet, plus FLAT where it is flat */
   float colour[3];   /* texel 2, bytes 32-43: diffuse reflectance rho, linear RGB, [0,1] */
   float area;        /* texel 2, bytes 44-47: effective area A_i, root cube squared */
 } OctreePoint;
@@ -49,8 +49,12 @@ typedef struct OctreePoint {
  * the front of the sheet, then its back. A ray meets both at the same t, and sees the one that faces it. */
 #define SHEET_FRONT 0.25f
 #define SHEET_BACK 0.5f
-#define SHEET_MATERIALS 2097152u /* 2^21: below it a float holds the quarters */
-#define SHEET_SIDE(material) ((material) - (float)(pg_uint)(material))
+#define SHEET_SIDE(material) (0.25f * (float)((pg_uint)((material)*4.0f) & 3u))
+
+/* A splat of a shape whose faces are planes: its disc lies in the true surface, and sticks out of it nowhere. */
+#define FLAT 0.125f
+#define IS_FLAT(material) (((pg_uint)((material)*8.0f) & 1u) != 0u)
+#define MOST_MATERIALS 2097152u /* 2^21: below it a float holds the eighths */
 
 /* Where a splat's disc ends before its rim does: at the border of what it stands for, two strips across each other in
  * the disc's plane. A hit counts where low <= axis . (hit - centre) <= high holds of both. */
@@ -85,7 +89,7 @@ typedef struct WideNode {
  *   0..3L-1 centre x, y, z;  3L..4L-1 radius (-1 in unused lanes);  4L..7L-1 normal x, y, z;  7L index of the block's
  *   first point in the point pool, the others follow it;  7L+1 a bit for each lane that is a side of a sheet;
  *   7L+2 a bit for each lane whose splat is clipped;  7L+3 the word of the pool at which their DiscClips begin, lane
- *   after lane;  7L+4..8L-1 zero
+ *   after lane;  7L+4 a bit for each lane whose splat is flat;  7L+5..8L-1 zero
  * The clips stand behind all blocks. */
 #define WIDE_BLOCK_WORDS(lanes) (8 * (lanes))
 #define WIDE_CENTRE(lanes, axis) ((axis) * (lanes))
@@ -95,6 +99,7 @@ typedef struct WideNode {
 #define WIDE_SHEETS(lanes) (7 * (lanes) + 1)
 #define WIDE_CLIPPED(lanes) (7 * (lanes) + 2)
 #define WIDE_CLIPS(lanes) (7 * (lanes) + 3)
+#define WIDE_FLAT(lanes) (7 * (lanes) + 4)
 
 /* Deepest wide tree that a traversal's stack holds: seven waiting siblings a level. */
 #define WIDE_MAX_DEPTH 27

@@ -42,7 +42,8 @@ typedef struct RayPacketAnswer {
  * above it, in units of the two discs' radii, and its disc faces the same way. A wall across, or the far side of a
  * sheet of any thickness, blocks at any distance, so corners and contacts do not leak; what lies parallel before a
  * surface, a picture or a lamp, blocks where the gap is wider than one and a half of their radii (a height of 0.5, one
- * radius, shows specks on the terraces of depth cameras). */
+ * radius, shows specks on the terraces of depth cameras). Of a flat splat (FLAT), which sticks out of no surface, a hit
+ * is taken so at no height but that of rounding: a lamp shadows the ceiling however close it hangs. */
 #define SELF_HIT_REACH 1.5f
 #define SELF_HIT_HEIGHT 0.75f
 #define SELF_HIT_COSINE 0.5f /* 60 degrees: more than a crease inside one surface, less than a corner of a box */
@@ -73,6 +74,10 @@ typedef struct RayPacketAnswer {
  * off a surface starts as far behind it. radii: those of the discs at its ends. */
 #define MOST_SEGMENT_MARGIN 4e-6f
 #define SEGMENT_MARGIN(radii) ROUNDING_MARGIN(radii, MOST_SEGMENT_MARGIN)
+
+/* The height above an end up to which a flat splat (FLAT) is that end's surface: what a ray starts behind it, and
+ * rounding. */
+#define FLAT_HEIGHT (MOST_SEGMENT_MARGIN + ROUNDING_OF_HITS)
 
 /* A question of the V-map: does anything stand between two points? */
 typedef struct SegmentQuery {

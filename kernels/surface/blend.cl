@@ -45,6 +45,9 @@ typedef struct Blend {
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
   float radius;
   uint splat, material;
+#ifdef HAS_CLIPS
+  bool flat; /* the disc hit first is */
+#endif
 } Blend;
 
 #ifdef HAS_SPECULAR
@@ -64,6 +67,11 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t
   float3 normal = texel.xyz;
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
+#ifdef HAS_CLIPS
+  /* Of two discs of which one is flat, the one behind the other is another surface. */
+  if ((b->flat || IS_FLAT(texel.w)) && (t - b->t_first) * fabs(dot3(normal, ray.direction)) > FLAT_HEIGHT)
+    return;
+#endif
   /* A tiny floor keeps a lone disc visible out to its very rim. */
   const float rim = fmax(1.0f - q, 1e-3f);
   const float depth = 1.0f - (t - b->t_first) / (b->t_end - b->t_first);
@@ -106,6 +114,9 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float
   b->radius = centre.w;
   b->splat = splat;
   b->material = (uint)normal.w;
+#ifdef HAS_CLIPS
+  b->flat = IS_FLAT(normal.w);
+#endif
   blend_add(POOL_ARGS, b, ray, splat, t, q, normal, albedo);
 }
 

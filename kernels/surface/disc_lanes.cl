@@ -12,6 +12,9 @@ typedef struct BlockHits {
   lanes_i inside; /* the ray meets the disc */
   uint first;     /* index of lane 0 in the point pool */
   uint sheets;    /* bit k: lane k is a side of a sheet */
+#ifdef HAS_CLIPS
+  uint flat; /* bit k: lane k is flat */
+#endif
 } BlockHits;
 
 /* meet in lanes, bit-identical. */
@@ -33,6 +36,9 @@ static inline BlockHits meet_lanes(const __global float* block, float3 origin, f
   h.inside = (distance2 <= r2) & (h.radius > 0.0f);
   h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
   h.sheets = as_uint(block[WIDE_SHEETS(WIDE_LANES)]);
+#ifdef HAS_CLIPS
+  h.flat = as_uint(block[WIDE_FLAT(WIDE_LANES)]);
+#endif
   return h;
 }
 

@@ -39,13 +39,24 @@ static inline bool belongs_to_end(float3 end_normal, float end_radius, float ste
 
 static inline bool is_sheet(float material) { return SHEET_SIDE(material) != 0.0f; }
 
+/* Whether what is met on a disc lies too far from an end's own plane to belong to it, however near it is: no flat disc sticks
+ * out of its surface. normal.w: the disc's material. */
+#ifdef HAS_CLIPS
+static inline bool is_apart(float3 direction, float distance, float4 normal) {
+  return IS_FLAT(normal.w) && distance * fabs(dot3(normal.xyz, direction)) > FLAT_HEIGHT;
+}
+#else
+static inline bool is_apart(float3 direction, float distance, float4 normal) { return false; }
+#endif
+
 /* Of a sheet's two sides, which lie in one place, the one that faces as an end does speaks for both, where the end may lie
  * on that sheet (SHEET_HEIGHT): whether that is the other side of the disc that is met `distance` from the end.
  * normal.w: the disc's material. */
 static inline bool is_turned(float3 end_normal, float end_radius, float3 direction, float distance, float radius,
                              float4 normal) {
   return is_sheet(normal.w) && dot3(normal.xyz, end_normal) < 0.0f &&
-         distance * fabs(dot3(normal.xyz, direction)) < SHEET_HEIGHT * (end_radius + radius);
+         distance * fabs(dot3(normal.xyz, direction)) < SHEET_HEIGHT * (end_radius + radius) &&
+         !is_apart(direction, distance, normal);
 }
 
 /* The normal by which such a disc is judged at the end. */
@@ -69,6 +80,7 @@ static inline bool disc_belongs_to_end(float3 end_normal, float end_radius, floa
                                        float4 normal) {
   const float3 n = normal_at_end(end_normal, end_radius, away, distance, radius, normal);
   return belongs_to_end(end_normal, end_radius, steepness_at_end(end_normal, away), distance, radius, n) &&
+         !is_apart(away, distance, normal) &&
          !(is_sheet(normal.w) && dot3(n, away) < 0.0f && distance > ARRIVAL_DISTANCE * radius);
 }
 
@@ -93,7 +105,7 @@ static inline bool belongs_to_origin(OcclusionEnds ends, float3 direction, float
 #endif
   return belongs_to_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), t, radius,
                         normal.xyz) &&
-         !(along < 0.0f && t > ARRIVAL_DISTANCE * radius);
+         !is_apart(direction, t, normal) && !(along < 0.0f && t > ARRIVAL_DISTANCE * radius);
 }
 
 static inline bool belongs_to_ends(OcclusionEnds ends, float3 direction, float t_max, float t, float radius,

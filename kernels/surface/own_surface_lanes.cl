@@ -5,22 +5,29 @@
 
 static inline lanes_i sheet_lanes(const BlockHits* h) { return (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u; }
 
+/* is_apart in lanes. along: cosines of the discs' normals with the direction. */
+#ifdef HAS_CLIPS
+static inline lanes_i apart_lanes(lanes_f along, lanes_f distance, const BlockHits* h) {
+  return ((((lanes_u)(h->flat) >> LANE_NUMBERS) & 1u) != 0u) & (distance * fabs(along) > FLAT_HEIGHT);
+}
+#else
+static inline lanes_i apart_lanes(lanes_f along, lanes_f distance, const BlockHits* h) { return (lanes_i)(0); }
+#endif
+
 /* is_turned in lanes. */
 static inline lanes_i turned_lanes(float3 end_normal, float end_radius, float3 direction, lanes_f distance,
                                    const BlockHits* h) {
   if (h->sheets == 0u)
     return (lanes_i)(0);
-  const lanes_f cosine = fma(h->nx, (lanes_f)(end_normal.x),
-                             fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
-  const lanes_f along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
-  return sheet_lanes(h) & (cosine < 0.0f) & (distance * fabs(along) < SHEET_HEIGHT * (end_radius + h->radius));
+  const lanes_f cosine = cosines_of_lanes(h, end_normal), along = cosines_of_lanes(h, direction);
+  return sheet_lanes(h) & (cosine < 0.0f) & (distance * fabs(along) < SHEET_HEIGHT * (end_radius + h->radius)) &
+         ~apart_lanes(along, distance, h);
 }
 
 /* belongs_to_end in lanes. `turned`: turned_lanes of the end. */
 static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float steepness, lanes_f distance,
                                    lanes_i turned, const BlockHits* h) {
-  const lanes_f own_cosine = fma(h->nx, (lanes_f)(end_normal.x),
-                                 fma(h->ny, (lanes_f)(end_normal.y), h->nz * end_normal.z));
+  const lanes_f own_cosine = cosines_of_lanes(h, end_normal);
   const lanes_f cosine = select(own_cosine, -own_cosine, turned);
   /* COINCIDENT in lanes */
   const lanes_f coincident = clamp(0.01f * (end_radius + h->radius), ROUNDING_OF_HITS, MOST_COINCIDENT);
@@ -32,10 +39,11 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float st
 static inline lanes_i discs_of_end(float3 end_normal, float end_radius, float steepness, float3 away, lanes_f distance,
                                    const BlockHits* h) {
   const lanes_i turned = turned_lanes(end_normal, end_radius, away, distance, h);
-  const lanes_i own = lanes_of_end(end_normal, end_radius, steepness, distance, turned, h);
+  const lanes_f own_along = cosines_of_lanes(h, away);
+  const lanes_i own = lanes_of_end(end_normal, end_radius, steepness, distance, turned, h) &
+                      ~apart_lanes(own_along, distance, h);
   if (h->sheets == 0u)
     return own;
-  const lanes_f own_along = fma(h->nx, (lanes_f)(away.x), fma(h->ny, (lanes_f)(away.y), h->nz * away.z));
   const lanes_f along = select(own_along, -own_along, turned);
   return own & ~(sheet_lanes(h) & (along < 0.0f) & (distance > ARRIVAL_DISTANCE * h->radius));
 }
@@ -44,11 +52,11 @@ static inline lanes_i discs_of_end(float3 end_normal, float end_radius, float st
 /* belongs_to_origin in lanes. */
 static inline lanes_i lanes_of_origin(OcclusionEnds ends, float3 direction, const BlockHits* h) {
   const lanes_i turned = turned_lanes(ends.origin_normal, ends.origin_radius, direction, h->t, h);
-  const lanes_f own_along = fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
+  const lanes_f own_along = cosines_of_lanes(h, direction);
   const lanes_f along = select(own_along, -own_along, turned);
   return lanes_of_end(ends.origin_normal, ends.origin_radius, steepness_at_end(ends.origin_normal, direction), h->t, turned,
                       h) &
-         ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
+         ~apart_lanes(own_along, h->t, h) & ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
 }
 #define LANES_OF_ORIGIN(h, met) lanes_of_origin(ends, ray.direction, h)
 #else

@@ -129,7 +129,7 @@ private:
       std::fill_n(block, WIDE_BLOCK_WORDS(lanes), 0.0f);
       const std::uint32_t first = leaf.range.first + b * lanes, past = leaf.range.first + leaf.range.count;
       std::memcpy(block + WIDE_FIRST(lanes), &first, sizeof first);
-      pg_uint sheets = 0;
+      pg_uint sheets = 0, flat = 0;
       for (unsigned lane = 0; lane < lanes; ++lane) {
         if (first + lane >= past) { // nothing is nearer to a centre than -1
           block[WIDE_RADIUS(lanes) + lane] = -1.0f;
@@ -143,9 +143,11 @@ private:
         }
         block[WIDE_RADIUS(lanes) + lane] = splat.radius;
         if (is_sheet(splat)) sheets |= 1u << lane;
+        if (is_flat(splat)) flat |= 1u << lane;
         box.add(splat);
       }
       std::memcpy(block + WIDE_SHEETS(lanes), &sheets, sizeof sheets);
+      std::memcpy(block + WIDE_FLAT(lanes), &flat, sizeof flat);
     }
     set_box(pools_.nodes[leaf.node], leaf.child, box);
   }
@@ -264,8 +266,9 @@ private:
       const float* block = &pools_.blocks[b * WIDE_BLOCK_WORDS(lanes)];
       std::uint32_t index;
       std::memcpy(&index, block + WIDE_FIRST(lanes), sizeof index);
-      pg_uint sheets, clipped, clips;
+      pg_uint sheets, flat, clipped, clips;
       std::memcpy(&sheets, block + WIDE_SHEETS(lanes), sizeof sheets);
+      std::memcpy(&flat, block + WIDE_FLAT(lanes), sizeof flat);
       std::memcpy(&clipped, block + WIDE_CLIPPED(lanes), sizeof clipped);
       std::memcpy(&clips, block + WIDE_CLIPS(lanes), sizeof clips);
       const std::size_t first_clip = next_clip_;
@@ -275,6 +278,8 @@ private:
           fail("block " + std::to_string(b) + " does not follow the points along the curve");
         if ((sheets >> lane & 1u) != (is_sheet(pools_.points[next_point_]) ? 1u : 0u))
           fail("block " + std::to_string(b) + " does not know which of its splats are sheets");
+        if ((flat >> lane & 1u) != (is_flat(pools_.points[next_point_]) ? 1u : 0u))
+          fail("block " + std::to_string(b) + " does not know which of its splats are flat");
         if ((clipped >> lane & 1u) != 0u) check_clip(clips + CLIP_WORDS * (next_clip_ - first_clip), b);
         check_splat(pools_.points[next_point_++], block, lane, box);
       }

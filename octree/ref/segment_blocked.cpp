@@ -19,6 +19,7 @@ Vector vector_of(const float v[3]) {
 bool belongs_to_end(const Splat& end, const Splat& hit, const Vector& away, double t) {
   const double radii = static_cast<double>(end.radius) + hit.radius;
   double cosine = vector_of(hit.normal).dot(vector_of(end.normal)), along = vector_of(hit.normal).dot(away);
+  if (is_flat(hit) && t * std::abs(along) > FLAT_HEIGHT) return false;
   if (is_sheet(hit)) {
     if (cosine < 0.0 && t * std::abs(along) < SHEET_HEIGHT * radii) { // the other side speaks for both
       cosine = -cosine;

@@ -18,6 +18,13 @@ constexpr double pi = 3.14159265358979323846;
 /// A cell of no more points is a leaf however its normals spread: noise must not end in leaves of one point each.
 constexpr unsigned few_points = 8;
 
+/// Faces of shapes into which a cell is divided at most; it has eight octants.
+constexpr std::size_t most_faces = 8;
+/// More points than this are not looked at: a cell that large holds many faces.
+constexpr std::uint32_t most_divided_by_face = 1u << 20;
+/// Planes are one plane within this: 1 - cosine, and root cube units: a few roundings.
+constexpr double same_direction = 1e-10, same_plane = 2e-6;
+
 /// Items that a thread takes at a time.
 constexpr std::size_t node_grain = 64, point_grain = 16384;
 
@@ -132,77 +139,166 @@ void set_bounds(Cluster& c, const Extent& e) {
   c.high_along = rounded_up(e.high_along);
 }
 
+/// A part of the points, in the order of the tree, and the level of the octree's cell that holds it.
+struct Part {
+  std::uint32_t first = 0, count = 0, level = 0;
+};
+
 class Clusters {
 public:
-  Clusters(View<Splat> splats, const ClusterOptions& options) : options_(options) {
+  Clusters(View<Splat> splats, const ClusterOptions& options, View<std::uint32_t> part)
+      : options_(options), part_(part) {
     TreeOptions tree_options;
     tree_options.leaf_capacity = std::min(few_points, options.leaf_capacity);
     tree_options.max_depth = options.max_depth;
     tree_options.listing = Listing::centres;
-    cells_ = build_tree(splats, tree_options);
-    clusters_.order.assign(cells_.order.begin(), cells_.order.end());
+    const Tree cells = build_tree(splats, tree_options);
+    clusters_.order.assign(cells.order.begin(), cells.order.end());
     clusters_.points.resize(splats.size);
     clusters_.leaf_of.resize(splats.size);
     parallel_ranges(splats.size, point_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k)
         clusters_.points[k] = splats[clusters_.order[k]];
     });
-    copy_cells();
+    divide({0, static_cast<std::uint32_t>(splats.size), 0});
     measure();
   }
 
   ClusterTree take() { return std::move(clusters_); }
 
 private:
-  /// Whether the points of a cell, which are no more than a leaf may hold, face nearly the same way.
-  bool near_planar(const TreeNode& cell) const {
+  /// Whether points, which are no more than a leaf may hold, face nearly the same way.
+  bool near_planar(const Part& part) const {
     Moments moments;
-    for (std::uint32_t i = 0; i < cell.count; ++i)
-      moments.add(clusters_.points[cell.first_point + i]);
+    for (std::uint32_t i = 0; i < part.count; ++i)
+      moments.add(clusters_.points[part.first + i]);
     Cluster c;
     set_means(c, moments);
-    set_bounds(c, extent_of(c, clusters_.points.data(), cell.first_point, cell.first_point + cell.count));
+    set_bounds(c, extent_of(c, clusters_.points.data(), part.first, part.first + part.count));
     return c.cone <= options_.planar_cone;
   }
 
-  bool ends_here(const TreeNode& cell) const {
-    return cell.first_child == 0 || (cell.count <= options_.leaf_capacity && near_planar(cell));
+  bool ends_here(const Part& part) const {
+    return part.count <= std::min(few_points, options_.leaf_capacity) || part.level >= options_.max_depth ||
+           (part.count <= options_.leaf_capacity && near_planar(part));
   }
 
-  /// The cells that hold points, level after level, so that a level's nodes can be treated at once.
-  void copy_cells() {
-    std::vector<TreeNode> level{cells_.nodes[0]};
+  /// Which flat face each point lies on, if those of the part are few; the points of none together are one more.
+  /// Returns how many: 0 where there are more than `most_faces`.
+  std::uint32_t faces_of(const Part& part, std::vector<std::uint8_t>& face) const {
+    struct Plane {
+      Vector normal;
+      double along;
+      std::uint32_t part;
+    };
+    std::vector<Plane> planes;
+    constexpr std::uint8_t none = 0xff;
+    bool any_flat = false, any_other = false;
+    for (std::uint32_t i = 0; i < part.count; ++i) {
+      const Splat& s = clusters_.points[part.first + i];
+      face[i] = none;
+      any_other = any_other || !is_flat(s);
+      if (!is_flat(s)) continue;
+      any_flat = true;
+      const Vector normal = normal_of(s), position = position_of(s);
+      const std::uint32_t part_number = part_.size == 0 ? 0 : part_[clusters_.order[part.first + i]];
+      const auto at = std::find_if(planes.begin(), planes.end(), [&](const Plane& p) {
+        return p.part == part_number && p.normal.dot(normal) > 1.0 - same_direction &&
+               std::abs(p.normal.dot(position) - p.along) < same_plane;
+      });
+      if (at == planes.end() && planes.size() == most_faces) return 0;
+      face[i] = static_cast<std::uint8_t>(at - planes.begin());
+      if (at == planes.end()) planes.push_back({normal, normal.dot(position), part_number});
+    }
+    if (!any_flat) return 1;
+    const auto of_planes = static_cast<std::uint8_t>(planes.size());
+    if (any_other) std::replace(face.begin(), face.begin() + part.count, none, of_planes);
+    return of_planes + (any_other ? 1u : 0u);
+  }
+
+  /// The octant of the part's cell that holds each point.
+  void octants_of(const Part& part, std::vector<std::uint8_t>& octant) const {
+    const double cells = std::ldexp(1.0, static_cast<int>(part.level) + 1);
+    for (std::uint32_t i = 0; i < part.count; ++i) {
+      octant[i] = 0;
+      for (int a = 0; a < 3; ++a) {
+        const auto cell =
+            static_cast<std::uint32_t>(static_cast<double>(clusters_.points[part.first + i].position[a]) * cells);
+        octant[i] |= static_cast<std::uint8_t>((cell & 1u) << a);
+      }
+    }
+  }
+
+  /// Gives a part's points, each of a kind below `kinds`, the order of their kinds and keeps it within these; the
+  /// parts.
+  std::vector<Part> sorted_by_kind(const Part& part, const std::vector<std::uint8_t>& kind, std::uint32_t kinds,
+                                   std::uint32_t level) {
+    std::vector<Part> parts(kinds);
+    for (std::uint32_t i = 0; i < part.count; ++i)
+      ++parts[kind[i]].count;
+    std::uint32_t first = part.first;
+    for (Part& p : parts) {
+      p.first = first;
+      p.level = level;
+      first += p.count;
+    }
+    std::vector<std::uint32_t> next, order(part.count);
+    std::vector<Splat> points(part.count);
+    for (const Part& p : parts)
+      next.push_back(p.first - part.first);
+    for (std::uint32_t i = 0; i < part.count; ++i) {
+      order[next[kind[i]]] = clusters_.order[part.first + i];
+      points[next[kind[i]]++] = clusters_.points[part.first + i];
+    }
+    std::copy(order.begin(), order.end(), clusters_.order.begin() + part.first);
+    std::copy(points.begin(), points.end(), clusters_.points.begin() + part.first);
+    parts.erase(std::remove_if(parts.begin(), parts.end(), [](const Part& p) { return p.count == 0; }), parts.end());
+    return parts;
+  }
+
+  /// Where a part holds points of a few flat faces these divide it, and what lies on one only: a cluster of two faces
+  /// neither faces anything as a whole nor is hidden or seen as one. Else the octants of its cell do. Empty: a leaf.
+  std::vector<Part> parts_of(const Part& part) {
+    std::vector<std::uint8_t> kind(part.count);
+    const std::uint32_t faces = part.count > most_divided_by_face ? 0 : faces_of(part, kind);
+    if (faces > 1) return sorted_by_kind(part, kind, faces, part.level);
+    if (ends_here(part)) return {};
+    octants_of(part, kind);
+    return sorted_by_kind(part, kind, 8, part.level + 1);
+  }
+
+  /// All nodes below the root, level after level, so that a level's can be treated at once.
+  void divide(const Part& root) {
+    std::vector<Part> level{root};
     clusters_.nodes.emplace_back();
-    clusters_.nodes[0].count = level[0].count;
+    clusters_.nodes[0].count = root.count;
     for (std::uint32_t first = 0; !level.empty(); first = level_starts_.back()) {
       level_starts_.push_back(first + static_cast<std::uint32_t>(level.size()));
-      std::vector<std::uint8_t> divided(level.size());
-      parallel_ranges(level.size(), node_grain, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::vector<Part>> parts(level.size());
+      parallel_ranges(level.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-          divided[i] = !ends_here(level[i]);
+          parts[i] = parts_of(level[i]);
       });
-      std::vector<TreeNode> next;
+      std::vector<Part> next;
       for (std::size_t i = 0; i < level.size(); ++i)
-        if (divided[i] != 0) add_children(level[i], first + static_cast<std::uint32_t>(i), next);
+        if (!parts[i].empty()) add_children(parts[i], first + static_cast<std::uint32_t>(i), next);
       level = std::move(next);
     }
   }
 
-  void add_children(const TreeNode& cell, std::uint32_t parent, std::vector<TreeNode>& next) {
+  void add_children(const std::vector<Part>& parts, std::uint32_t parent, std::vector<Part>& next) {
     const auto first = static_cast<std::uint32_t>(clusters_.nodes.size());
-    for (unsigned k = 0; k < 8; ++k) {
-      const TreeNode& child = cells_.nodes[cell.first_child + k];
-      if (child.count == 0) continue;
+    for (const Part& part : parts) {
       Cluster c;
-      c.first_point = child.first_point;
-      c.count = child.count;
+      c.first_point = part.first;
+      c.count = part.count;
       c.parent = parent;
-      c.level = child.level;
+      c.level = clusters_.nodes[parent].level + 1;
       clusters_.nodes.push_back(c);
-      next.push_back(child);
+      next.push_back(part);
     }
     clusters_.nodes[parent].first_child = first;
-    clusters_.nodes[parent].child_count = static_cast<std::uint32_t>(clusters_.nodes.size()) - first;
+    clusters_.nodes[parent].child_count = static_cast<std::uint32_t>(parts.size());
   }
 
   /// Means from the leaves upwards, then bounds.
@@ -255,7 +351,7 @@ private:
   }
 
   ClusterOptions options_;
-  Tree cells_;
+  View<std::uint32_t> part_; ///< of each input splat, or empty
   ClusterTree clusters_;
   std::vector<std::uint32_t> level_starts_; ///< one past the last node of each level
   std::vector<Moments> moments_;            ///< one a node
@@ -317,7 +413,8 @@ ClusterTree joined(View<Splat> splats, const ClusterTree (&parts)[2], const std:
 
 } // namespace
 
-ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options) {
+ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options, View<std::uint32_t> part) {
+  if (part.size != 0 && part.size != splats.size) throw std::invalid_argument("vmap: a part of each splat, or of none");
   if (!(options.planar_cone > 0.0f)) throw std::invalid_argument("vmap: planar_cone must be above 0 radians");
   if (options.leaf_capacity < 1) throw std::invalid_argument("vmap: leaf_capacity must be at least 1");
   if (splats.size == 0) {
@@ -329,15 +426,18 @@ ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options) {
   std::vector<std::uint32_t> input[2]; // all but backs of sheets, and these
   for (std::uint32_t i = 0; i < splats.size; ++i)
     if (is_back_of_sheet(splats[i])) input[1].push_back(i);
-  if (input[1].empty() || input[1].size() == splats.size) return Clusters(splats, options).take();
+  if (input[1].empty() || input[1].size() == splats.size) return Clusters(splats, options, part).take();
   ClusterTree parts[2];
   for (std::uint32_t i = 0; i < splats.size; ++i)
     if (!is_back_of_sheet(splats[i])) input[0].push_back(i);
   for (std::size_t p = 0; p < 2; ++p) {
-    std::vector<Splat> of_part;
-    for (const std::uint32_t i : input[p])
-      of_part.push_back(splats[i]);
-    parts[p] = Clusters(of_part, options).take();
+    std::vector<Splat> of_tree;
+    std::vector<std::uint32_t> part_of_tree;
+    for (const std::uint32_t i : input[p]) {
+      of_tree.push_back(splats[i]);
+      if (part.size != 0) part_of_tree.push_back(part[i]);
+    }
+    parts[p] = Clusters(of_tree, options, part_of_tree).take();
   }
   return joined(splats, parts, input);
 }

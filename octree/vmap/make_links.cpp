@@ -3,7 +3,9 @@
 #include "octree/vmap/facing.h"
 #include "octree/vmap/pair_samples.h"
 #include "octree/vmap/point_shares.h"
+#include "octree/vmap/shafts.h"
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 namespace pointgi {
@@ -41,9 +43,11 @@ struct Question {
     point_wise ///< what share of two leaves' points see each other?
   };
   Kind kind = dropped;
-  bool small = false;         ///< light below epsilon
-  bool all_facing = false;    ///< the far form, without clamps, is allowed
-  std::uint32_t segments = 0; ///< asked; 0: no two points that face each other were found
+  bool small = false;      ///< light below epsilon
+  bool all_facing = false; ///< the far form, without clamps, is allowed
+  Obstacles between = Obstacles::own;
+  bool faces = false;         ///< two points that face each other were found
+  std::uint32_t segments = 0; ///< asked
 };
 
 /// A range's share of what a wave puts out.
@@ -67,8 +71,10 @@ std::vector<T> joined(const std::vector<Part>& parts, const Get& get) {
 
 class LinkMaker {
 public:
-  LinkMaker(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options)
-      : tree_(tree), oracle_(oracle), options_(options), samples_(tree, options.seed, options.thesis) {}
+  LinkMaker(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options, View<Splat> obstacles)
+      : tree_(tree), oracle_(oracle), options_(options), samples_(tree, options.seed, options.thesis) {
+    if (obstacles.size > 0 && !options.thesis) shafts_.emplace(obstacles);
+  }
 
   VMap run() {
     std::vector<Pair> wave;
@@ -162,7 +168,13 @@ private:
       q.kind = Question::whole;
     else
       q.kind = is_leaf(pair.a) && is_leaf(pair.b) ? Question::point_wise : Question::divided;
-    if (q.kind != Question::divided) q.segments = ask(pair, q.kind == Question::point_wise, exchange, segments);
+    if (q.kind == Question::divided) return q;
+    if (shafts_ && pair.stage != Stage::all_blocked) q.between = shafts_->between(a, b);
+    std::vector<Segment> unasked;
+    const bool open = q.between == Obstacles::none;
+    const std::uint32_t found = ask(pair, q.kind == Question::point_wise, exchange, open ? unasked : segments);
+    q.faces = found > 0;
+    if (!open) q.segments = found;
     return q;
   }
 
@@ -194,7 +206,7 @@ private:
     case Question::dropped:
       return;
     case Question::self:
-      out.links.push_back({pair.a, pair.b, 1.0f, LinkKind::near_});
+      out.links.push_back({pair.a, pair.b, 1.0f, LinkKind::near_, no_point_shares, true});
       return;
     case Question::divided:
       divide(pair, out);
@@ -204,8 +216,8 @@ private:
       return;
     case Question::point_wise:
       // None found that face each other: there are none, or too many pairs to know; then the clamps will tell.
-      if (q.segments == 0 && searchable(pair)) return;
-      if (q.segments == 0 || open > 0) out.links.push_back({pair.a, pair.b, share(q, open), LinkKind::near_});
+      if (!q.faces && searchable(pair)) return;
+      if (q.segments == 0 || open > 0) out.links.push_back(link(pair, q, open, LinkKind::near_));
       return;
     }
   }
@@ -214,17 +226,22 @@ private:
     return q.segments == 0 ? 1.0f : static_cast<float>(open) / static_cast<float>(q.segments);
   }
 
+  static Link link(const Pair& pair, const Question& q, std::uint32_t open, LinkKind kind) {
+    const float visible = share(q, open);
+    return {pair.a, pair.b, visible, kind, no_point_shares, visible == 1.0f && q.between != Obstacles::some};
+  }
+
   void decide_whole(const Pair& pair, const Question& q, std::uint32_t open, Output& out) const {
     const float visible = share(q, open);
     const bool retested = pair.stage == Stage::all_blocked;
-    if (q.small && (q.segments == 0 || ((options_.thesis || coarse_) && visible == 0.0f))) return;
+    if (q.small && (!q.faces || ((options_.thesis || coarse_) && visible == 0.0f))) return;
     if (visible == 0.0f && !options_.thesis) {
       // Behind a wall, or almost: what is dropped wrongly all points of the pair miss, and their cluster shows.
       if (!retested) out.next.push_back({pair.a, pair.b, Stage::all_blocked});
       return;
     }
     if (q.small || (visible == 1.0f && !retested)) {
-      out.links.push_back({pair.a, pair.b, visible, q.all_facing ? LinkKind::far : LinkKind::mid});
+      out.links.push_back(link(pair, q, open, q.all_facing ? LinkKind::far : LinkKind::mid));
       return;
     }
     // One segment of the thesis says nothing of the others when it is blocked: it goes down to the leaves.
@@ -256,6 +273,7 @@ private:
   VisibilityOracle& oracle_;
   LinkOptions options_;
   PairSamples samples_;
+  std::optional<Shafts> shafts_;
   bool coarse_ = false;    ///< most_rays is reached: from now on no pair that is far apart is divided
   double rays_a_pair_ = 0; ///< that the wave before asked
   VMap map_;
@@ -263,13 +281,13 @@ private:
 
 } // namespace
 
-VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options) {
+VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options, View<Splat> obstacles) {
   if (options.samples < 1 || options.samples > 1024)
     throw std::invalid_argument("vmap: samples must be from 1 to 1024");
   if (!(options.epsilon >= 0.0f)) throw std::invalid_argument("vmap: epsilon must not be negative");
   if (!(options.separation > 0.0f && options.separation <= 1.0f))
     throw std::invalid_argument("vmap: separation must be above 0 and at most 1");
-  VMap map = LinkMaker(tree, oracle, options).run();
+  VMap map = LinkMaker(tree, oracle, options, obstacles).run();
   if (options.point_samples > 0 && !options.thesis)
     map.point_shares = make_point_shares(tree, map.links, oracle, {options.point_samples, options.seed, options.batch},
                                          map.statistics.rays);

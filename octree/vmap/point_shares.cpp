@@ -131,7 +131,7 @@ std::pair<std::vector<const Link*>, std::size_t> place_shares(const ClusterTree&
   std::vector<const Link*> partial;
   std::size_t all = 0;
   for (Link& link : links)
-    if (link.visible < 1.0f && link.a != link.b) {
+    if (!link.open && link.a != link.b) {
       if (all + ends_of(tree, link) > no_point_shares)
         throw std::length_error("vmap: more than 4 GiB of shares; a larger epsilon has less");
       link.point_shares = static_cast<std::uint32_t>(all);

@@ -22,7 +22,7 @@ struct Kept {
   Kept() {
     options.samples = 2;
     options.epsilon = 0.1f;
-    map = make_links(tree, oracle, options);
+    map = make_links(tree, oracle, options, splats);
     key = vmap_key(tree, splats, options, "a linear scan");
   }
 };

@@ -1,0 +1,35 @@
+#pragma once
+/// What may stand between two clusters, from bounds alone (Haines and Wallace, "Shaft culling for efficient ray-traced
+/// radiosity", 1991): the hull of both clusters' boxes, less what lies behind either's points, against a tree of boxes
+/// around all splats.
+#include "octree/vmap/cluster_tree.h"
+
+namespace pointgi {
+
+enum class Obstacles {
+  none, ///< every point of the one sees every point of the other that it faces
+  own,  ///< discs that may belong to the surfaces at the two ends, as those of a bent surface do
+  some  ///< something may hide points of the one from points of the other
+};
+
+/// A tree of boxes around splats, for any number of questions at once.
+class Shafts {
+public:
+  /// `splats`: all that block, neighbours in the list near each other in space, as the point pool is; must outlive
+  /// this.
+  explicit Shafts(View<Splat> splats);
+
+  /// `some` as well where the question takes too long.
+  Obstacles between(const Cluster& a, const Cluster& b) const;
+
+private:
+  struct Box {
+    float low[3], high[3];
+  };
+  static Box box_of(const Splat& disc);
+
+  View<Splat> splats_;
+  std::vector<std::vector<Box>> levels_; ///< [0]: of `fan` splats each; above: of `fan` boxes of the level below
+};
+
+} // namespace pointgi
