@@ -24,6 +24,25 @@ struct Problem {
         sum[c] += area[i] * std::abs(x[static_cast<Eigen::Index>(3 * i + c)]);
     return sum;
   }
+
+  /// Mean over the area of |change| / after, of the worst colour: a dark room counts as much as the bright street before
+  /// it. What is darker than `faintest` of the mean is not asked for.
+  double relative(const Eigen::VectorXd& change, const Eigen::VectorXd& after) const {
+    constexpr double faintest = 1e-5;
+    const std::array<double, 3> all = power(after);
+    double whole = 0.0, worst = 0.0;
+    for (std::size_t i = 0; i < area.size; ++i)
+      whole += area[i];
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < area.size; ++i) {
+        const auto at = static_cast<Eigen::Index>(3 * i + c);
+        if (change[at] != 0.0) sum += area[i] * std::abs(change[at]) / (std::abs(after[at]) + faintest * all[c] / whole);
+      }
+      if (whole > 0.0) worst = std::max(worst, sum / whole);
+    }
+    return worst;
+  }
 };
 
 void check(const RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
@@ -44,12 +63,13 @@ void sweep(Problem& problem, const std::array<double, 3>& emitted, Eigen::Vector
   const Eigen::Map<const Eigen::VectorXd> irradiance(h.data(), b.size());
   const Eigen::VectorXd next = problem.emission + problem.albedo.cwiseProduct(irradiance);
   const std::array<double, 3> change = problem.power(next - b);
-  double residual = 0.0;
+  double of_power = 0.0;
   for (int c = 0; c < 3; ++c)
-    if (emitted[c] > 0.0) residual = std::max(residual, change[c] / emitted[c]);
-  if (!solution.history.empty() && solution.history.back() > 0.0) solution.rate = residual / solution.history.back();
-  solution.history.push_back(residual);
-  solution.residual = residual;
+    if (emitted[c] > 0.0) of_power = std::max(of_power, change[c] / emitted[c]);
+  // The rate is that of the power: while light goes from room to room the relative residual does not fall.
+  if (!solution.history.empty() && solution.history.back() > 0.0) solution.rate = of_power / solution.history.back();
+  solution.history.push_back(of_power);
+  solution.residual = std::max(of_power, problem.relative(next - b, next));
   ++solution.sweeps;
   ++solution.applies;
   b = next;
@@ -94,7 +114,8 @@ bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const So
       return true;
     }
     if (!(solution.residual < 0.7 * before)) return false;
-    inner *= 0.3; // the power of the residual and Krylov's root mean square of it differ
+    // What is left is measured otherwise than by Krylov's root mean square: in dark places by far.
+    inner *= std::min(0.3, options.tolerance / solution.residual);
   }
   return false;
 }
@@ -125,7 +146,7 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
   if (!keeps() && options.krylov && sweeps_left(solution, options.tolerance) > options.patient_sweeps) {
     const Eigen::VectorXd kept = b;
     if (accelerate(problem, emitted, options, b, solution)) return finish();
-    if (!(solution.residual < solution.history[options.first_sweeps - 1])) {
+    if (!(solution.history.back() < solution.history[options.first_sweeps - 1])) {
       b = kept; // worse than before: from there on as if it had not been
       solution.rate = 0.0;
     }

@@ -7,7 +7,8 @@
 namespace pointgi {
 
 struct SolveOptions {
-  /// Residual to reach: power of E + rho H(B) - B, taken absolutely, over the power of E; the worst of the colours.
+  /// Residual to reach, r = E + rho H(B) - B: the power of |r| over the power of E, and the mean of |r| / B over the area,
+  /// by which dark rooms converge too; the larger of the two, and the worst of the colours.
   double tolerance = 1e-4;
   /// Sweeps of Jacobi's method before its rate is judged.
   unsigned first_sweeps = 8;
@@ -35,7 +36,7 @@ struct Solution {
   unsigned applies = 0;  ///< of the operator: what the time goes with
   unsigned sweeps = 0;   ///< of these, Jacobi's
   unsigned krylov_steps = 0;
-  std::vector<double> history; ///< residual after each Jacobi sweep
+  std::vector<double> history; ///< power of the residual over that of E after each Jacobi sweep
 };
 
 /// emission E [points x 3, W/m^2], albedo rho [points x 3, 0..1], area [points, any unit]; tree order, RGB. Jacobi's
