@@ -124,6 +124,29 @@ std::array<float, 16> world_to_ndc(const Scene& scene) {
   return flat(projection * camera_matrix(scene));
 }
 
+namespace {
+
+/// Where rays by the cosine look for emitting splats besides the samples on them (kernels/lights/emitter.cl): nearer
+/// than this the density of samples, spread evenly over the area A, is below 1 / pi per solid angle.
+void set_reach(View<Splat> points, DeviceLighting& lighting) {
+  RenderParams& params = lighting.params;
+  if (lighting.emitters.empty()) return;
+  Eigen::AlignedBox3f box;
+  double area = 0.0;
+  for (const Emitter& e : lighting.emitters) {
+    const Splat& s = points[e.point];
+    const Eigen::Vector3f centre(s.position[0], s.position[1], s.position[2]);
+    box.extend(Eigen::Vector3f(centre.array() - s.radius));
+    box.extend(Eigen::Vector3f(centre.array() + s.radius));
+    area += s.area;
+  }
+  params.emitter_reach = static_cast<float>(std::sqrt(area / 3.14159265358979323846));
+  std::copy_n(box.min().data(), 3, params.emitter_low);
+  std::copy_n(box.max().data(), 3, params.emitter_high);
+}
+
+} // namespace
+
 DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Splat> points, const SplatClips& clips) {
   DeviceLighting result;
   result.radiance = choose_scale(scene, frame);
@@ -153,6 +176,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
     all_emitted += emitted(e.point);
   for (std::size_t m = 0; m < scene.materials.size() && all_emitted > 0.0; ++m)
     result.materials[m].emitter_density = static_cast<float>(power[m] / all_emitted);
+  set_reach(points, result);
   for (const LightSettings& entry : scene.lights) {
     const LightSource light = device_light(entry, frame, scale);
     if (!(light.strength[0] + light.strength[1] + light.strength[2] > 0.0f)) continue;

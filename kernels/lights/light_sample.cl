@@ -6,6 +6,8 @@
 #include "lights/sky_map.cl"
 #endif
 
+#define INVERSE_PI 0.31830989f
+
 typedef struct Lights {
   __constant RenderParams* params;
   const __global Material* materials;

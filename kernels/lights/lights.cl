@@ -15,6 +15,8 @@
 
 /* Use of random numbers at a vertex beside 1 to 3 for the kinds of light and those of kernels/render/eye_sample.cl (4 to 6). */
 #define DIMENSION_SECOND_SKY 7u
+/* Another seed for the rays that look for emitters near by: all dimensions of a vertex are in use. */
+#define NEAR_EMITTER_SEED 0x51ED270Bu
 
 /* The surface that is lit, as its viewer sees it: what the lobe of its material needs. */
 typedef struct Viewed {
@@ -126,6 +128,7 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
 #endif
 #ifdef HAS_EMITTERS
   emitter_samples = lights.params->emitters > 0u ? 1u : 0u;
+  const float reach = emitter_samples > 0u && is_near_emitters(s, lights.params) ? lights.params->emitter_reach : 0.0f;
 #endif
 #ifdef HAS_ENVIRONMENT
   const float3 sky = load3_constant(lights.params->environment);
@@ -146,7 +149,8 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
 #endif
 #ifdef HAS_EMITTERS
     if (i >= source_samples && i < source_samples + emitter_samples)
-      faces = sample_emitter(POOL_ARGS, s, lights.materials, lights.emitters, lights.params->emitters, u, &light);
+      faces = sample_emitter(POOL_ARGS, s, lights.materials, lights.emitters, lights.params->emitters, reach, u,
+                             &light);
 #endif
 #ifdef HAS_ENVIRONMENT
     if (i >= source_samples + emitter_samples)
@@ -165,5 +169,12 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
 #endif
     }
   }
+#ifdef HAS_EMITTERS
+  if (reach > 0.0f) {
+    SampleId near = id;
+    near.seed ^= NEAR_EMITTER_SEED;
+    sum += near_emitter(POOL_ARGS, s, lights.materials, lights.params, stratified4(near, 2u).xy, rays);
+  }
+#endif
   return sum;
 }

@@ -4,8 +4,6 @@
 #include "lights/lights.cl"
 #include "render/camera.cl"
 
-#define INVERSE_PI 0.31830989f
-
 /* Uses of random numbers at a vertex, after those of kernels/lights/lights.cl (1 to 3, 7). */
 #define DIMENSION_BOUNCE 4u
 #define DIMENSION_ROULETTE 5u

@@ -75,7 +75,7 @@ __kernel void probe_emitter(POOL_PARAMS, const __global Material* materials, con
     return;
   const Surface s = plain_surface(position.xyz, normal.xyz, true);
   LightSample sample;
-  const bool faces = sample_emitter(POOL_ARGS, &s, materials, emitters, emitter_count, u[i], &sample);
+  const bool faces = sample_emitter(POOL_ARGS, &s, materials, emitters, emitter_count, 0.0f, u[i], &sample);
   Surface met = plain_surface(position.xyz + sample.distance * sample.towards, sample.normal, true);
   const uint k = pick(&emitters->cumulative, sizeof(Emitter) / sizeof(float), emitter_count, u[i].x);
   met.material = (uint)pool_point_texel(POINT_TEXELS * emitters[k].point + 1u).w;
