@@ -1,5 +1,4 @@
 #include "octree/vmap/shafts.h"
-#include "octree/parallel.h"
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -12,8 +11,6 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Splats of a lowest box, and boxes of the next.
-constexpr std::size_t fan = 8;
 /// Boxes and splats that a question looks at before it gives up: about what asking the segments would cost.
 constexpr int most_looks = 512;
 /// Rounding of positions and of products with them, coordinates below 1.
@@ -42,6 +39,8 @@ public:
     }
     for (int u = 0; u < 3; ++u)
       add_edges(a, b, u, (u + 1) % 3);
+    ends_[0] = &a;
+    ends_[1] = &b;
     const double longest = (vector_of(b.centre) - vector_of(a.centre)).norm() + a.radius + b.radius;
     add_front(a, longest);
     add_front(b, longest);
@@ -58,6 +57,19 @@ public:
       if (least > plane_[p].limit) return false;
     }
     return true;
+  }
+
+  /// Whether a cluster of splats lies on, or behind, the plane of an end, which its own axis tells better than its box.
+  bool lies_behind(const Cluster& c) const {
+    constexpr double same_direction = 1e-10, flat = 1e-5;
+    if (static_cast<double>(c.cone) > flat) return false;
+    return std::any_of(std::begin(ends_), std::end(ends_), [&](const Cluster* end) {
+      if (static_cast<double>(end->cone) > flat) return false;
+      const double cosine = vector_of(end->axis).dot(vector_of(c.axis));
+      if (std::abs(cosine) < 1.0 - same_direction) return false;
+      const double highest = cosine > 0.0 ? c.high_along : -c.low_along;
+      return highest < end->low_along + FLAT_HEIGHT;
+    });
   }
 
 private:
@@ -96,6 +108,7 @@ private:
   double low_[3], high_[3];
   std::array<Plane, 14> plane_; ///< twelve edges at most, and two fronts
   int count_ = 0;
+  const Cluster* ends_[2];
 };
 
 /// Whether a disc may be part of the surface of a cluster: near it, and facing as it does.
@@ -115,24 +128,16 @@ bool may_belong_to(const Cluster& c, const Splat& disc) {
 
 } // namespace
 
-Shafts::Shafts(View<Splat> splats) : splats_(splats) {
+Shafts::Shafts(View<Splat> splats) : tree_(build_clusters(splats, {})) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  const Box empty{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  std::vector<Box> boxes((splats.size + fan - 1) / fan, empty);
-  parallel_ranges(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t k = fan * i; k < std::min(fan * (i + 1), splats.size); ++k) {
-        const Box disc = box_of(splats[k]);
-        add_box(boxes[i], disc.low, disc.high);
-      }
-  });
-  while (!boxes.empty()) {
-    levels_.push_back(std::move(boxes));
-    const std::vector<Box>& below = levels_.back();
-    if (below.size() == 1) break;
-    boxes.assign((below.size() + fan - 1) / fan, empty);
-    for (std::size_t i = 0; i < below.size(); ++i)
-      add_box(boxes[i / fan], below[i].low, below[i].high);
+  boxes_.assign(tree_.nodes.size(), {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}});
+  for (std::size_t k = tree_.nodes.size(); k-- > 0;) { // children stand behind their parents
+    const Cluster& c = tree_.nodes[k];
+    for (std::uint32_t i = c.first_point; c.child_count == 0 && i < c.first_point + c.count; ++i) {
+      const Box disc = box_of(tree_.points[i]);
+      add_box(boxes_[k], disc.low, disc.high);
+    }
+    if (k != 0) add_box(boxes_[c.parent], boxes_[k].low, boxes_[k].high);
   }
 }
 
@@ -147,29 +152,23 @@ Shafts::Box Shafts::box_of(const Splat& disc) {
 }
 
 Obstacles Shafts::between(const Cluster& a, const Cluster& b) const {
-  if (levels_.empty()) return Obstacles::none;
   const Shaft shaft(a, b);
-  struct Place {
-    std::size_t level, index;
-  };
-  std::vector<Place> waiting{{levels_.size() - 1, 0}};
+  std::vector<std::uint32_t> waiting{0};
   Obstacles found = Obstacles::none;
   for (int looks = 0; !waiting.empty(); ++looks) {
     if (looks > most_looks) return Obstacles::some;
-    const Place at = waiting.back();
+    const std::uint32_t at = waiting.back();
+    const Cluster& node = tree_.nodes[at];
     waiting.pop_back();
-    const Box& box = levels_[at.level][at.index];
-    if (!shaft.meets(box.low, box.high)) continue;
-    const std::size_t first = fan * at.index;
-    if (at.level > 0) {
-      for (std::size_t k = first; k < std::min(first + fan, levels_[at.level - 1].size()); ++k)
-        waiting.push_back({at.level - 1, k});
-      continue;
-    }
-    for (std::size_t k = first; k < std::min(first + fan, splats_.size); ++k) {
-      const Box disc = box_of(splats_[k]);
+    if (!shaft.meets(boxes_[at].low, boxes_[at].high) || shaft.lies_behind(node)) continue;
+    for (std::uint32_t k = 0; k < node.child_count; ++k)
+      waiting.push_back(node.first_child + k);
+    if (node.child_count > 0) continue;
+    for (std::uint32_t i = node.first_point; i < node.first_point + node.count; ++i) {
+      const Splat& splat = tree_.points[i];
+      const Box disc = box_of(splat);
       if (!shaft.meets(disc.low, disc.high)) continue;
-      if (!may_belong_to(a, splats_[k]) && !may_belong_to(b, splats_[k])) return Obstacles::some;
+      if (!may_belong_to(a, splat) && !may_belong_to(b, splat)) return Obstacles::some;
       found = Obstacles::own;
     }
   }

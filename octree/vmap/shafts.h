@@ -1,7 +1,7 @@
 #pragma once
 /// What may stand between two clusters, from bounds alone (Haines and Wallace, "Shaft culling for efficient ray-traced
-/// radiosity", 1991): the hull of both clusters' boxes, less what lies behind either's points, against a tree of boxes
-/// around all splats.
+/// radiosity", 1991): the hull of both clusters' boxes, less what lies behind either's points, against boxes around
+/// all splats.
 #include "octree/vmap/cluster_tree.h"
 
 namespace pointgi {
@@ -12,11 +12,11 @@ enum class Obstacles {
   some  ///< something may hide points of the one from points of the other
 };
 
-/// A tree of boxes around splats, for any number of questions at once.
+/// Boxes around splats, by their clusters: of flat faces these are flat, and the face that a cluster lies on falls away
+/// early. For any number of questions at once.
 class Shafts {
 public:
-  /// `splats`: all that block, neighbours in the list near each other in space, as the point pool is; must outlive
-  /// this.
+  /// `splats`: all that block.
   explicit Shafts(View<Splat> splats);
 
   /// `some` as well where the question takes too long.
@@ -28,8 +28,8 @@ private:
   };
   static Box box_of(const Splat& disc);
 
-  View<Splat> splats_;
-  std::vector<std::vector<Box>> levels_; ///< [0]: of `fan` splats each; above: of `fan` boxes of the level below
+  ClusterTree tree_;
+  std::vector<Box> boxes_; ///< around the discs of each node
 };
 
 } // namespace pointgi

@@ -1,4 +1,3 @@
-#include "octree/build/tree.h"
 #include "octree/ref/segment_blocked.h"
 #include "octree/vmap/facing.h"
 #include "octree/vmap/pair_samples.h"
@@ -17,16 +16,6 @@ void add_square(std::vector<Splat>& splats, float y, float up, float low, float 
       splats.push_back({{x, y, z}, 0.75f * step, {0, up, 0}, FLAT, {0.5f, 0.5f, 0.5f}, step * step});
 }
 
-/// In the order of a curve, as the point pool is.
-std::vector<Splat> ordered(const std::vector<Splat>& splats) {
-  TreeOptions options;
-  options.listing = Listing::centres;
-  const Tree tree = build_tree(splats, options);
-  std::vector<Splat> result;
-  for (const std::uint32_t k : tree.order)
-    result.push_back(splats[k]);
-  return result;
-}
 
 /// Whether any pair of points of the two clusters that face each other is hidden, by a scan of all discs.
 bool hides_any(const ClusterTree& tree, View<Splat> splats, const Cluster& a, const Cluster& b) {
@@ -45,15 +34,15 @@ TEST_CASE("between clusters that are proved open nothing is hidden, and most tha
   add_square(splats, 0.7f, -1.0f, 0.2f, 0.8f, 0.04f); // ceiling
   const float below = GENERATE(0.005f, 0.02f, 0.1f);
   add_square(splats, 0.7f - below, -1.0f, 0.42f, 0.58f, 0.04f); // a lamp
-  const std::vector<Splat> pool = ordered(splats);
-  const ClusterTree tree = build_clusters(pool, {});
-  const Shafts shafts(pool);
+  
+  const ClusterTree tree = build_clusters(splats, {});
+  const Shafts shafts(splats);
   std::map<Obstacles, int> open, hidden;
   for (std::size_t a = 0; a < tree.nodes.size(); ++a)
     for (std::size_t b = a + 1; b < tree.nodes.size(); ++b) {
       const Cluster &x = tree.nodes[a], &y = tree.nodes[b];
       if (x.count > 64 || y.count > 64 || facing(x, y) == Facing::none || facing(y, x) == Facing::none) continue;
-      ++(hides_any(tree, pool, x, y) ? hidden : open)[shafts.between(x, y)];
+      ++(hides_any(tree, splats, x, y) ? hidden : open)[shafts.between(x, y)];
     }
   CAPTURE(open[Obstacles::none], open[Obstacles::own], open[Obstacles::some]);
   CHECK(hidden[Obstacles::none] == 0);
