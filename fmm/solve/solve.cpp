@@ -25,8 +25,8 @@ struct Problem {
     return sum;
   }
 
-  /// Mean over the area of |change| / after, of the worst colour: a dark room counts as much as the bright street before
-  /// it. What is darker than `faintest` of the mean is not asked for.
+  /// Mean over the area of |change| / after, of the worst colour: a dark room counts as much as the bright street
+  /// before it. What is darker than `faintest` of the mean is not asked for.
   double relative(const Eigen::VectorXd& change, const Eigen::VectorXd& after) const {
     constexpr double faintest = 1e-5;
     const std::array<double, 3> all = power(after);
@@ -37,7 +37,8 @@ struct Problem {
       double sum = 0.0;
       for (std::size_t i = 0; i < area.size; ++i) {
         const auto at = static_cast<Eigen::Index>(3 * i + c);
-        if (change[at] != 0.0) sum += area[i] * std::abs(change[at]) / (std::abs(after[at]) + faintest * all[c] / whole);
+        if (change[at] != 0.0)
+          sum += area[i] * std::abs(change[at]) / (std::abs(after[at]) + faintest * all[c] / whole);
       }
       if (whole > 0.0) worst = std::max(worst, sum / whole);
     }

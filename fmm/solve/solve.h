@@ -7,8 +7,8 @@
 namespace pointgi {
 
 struct SolveOptions {
-  /// Residual to reach, r = E + rho H(B) - B: the power of |r| over the power of E, and the mean of |r| / B over the area,
-  /// by which dark rooms converge too; the larger of the two, and the worst of the colours.
+  /// Residual to reach, r = E + rho H(B) - B: the power of |r| over the power of E, and the mean of |r| / B over the
+  /// area, by which dark rooms converge too; the larger of the two, and the worst of the colours.
   double tolerance = 1e-4;
   /// Sweeps of Jacobi's method before its rate is judged.
   unsigned first_sweeps = 8;

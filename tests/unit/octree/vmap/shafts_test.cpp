@@ -16,7 +16,6 @@ void add_square(std::vector<Splat>& splats, float y, float up, float low, float 
       splats.push_back({{x, y, z}, 0.75f * step, {0, up, 0}, FLAT, {0.5f, 0.5f, 0.5f}, step * step});
 }
 
-
 /// Whether any pair of points of the two clusters that face each other is hidden, by a scan of all discs.
 bool hides_any(const ClusterTree& tree, View<Splat> splats, const Cluster& a, const Cluster& b) {
   for (std::uint32_t i = a.first_point; i < a.first_point + a.count; ++i)
@@ -34,7 +33,7 @@ TEST_CASE("between clusters that are proved open nothing is hidden, and most tha
   add_square(splats, 0.7f, -1.0f, 0.2f, 0.8f, 0.04f); // ceiling
   const float below = GENERATE(0.005f, 0.02f, 0.1f);
   add_square(splats, 0.7f - below, -1.0f, 0.42f, 0.58f, 0.04f); // a lamp
-  
+
   const ClusterTree tree = build_clusters(splats, {});
   const Shafts shafts(splats);
   std::map<Obstacles, int> open, hidden;
