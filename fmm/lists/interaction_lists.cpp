@@ -70,20 +70,27 @@ SourceLists rows_of(const ClusterTree& tree, View<Link> links, const std::vector
   const std::size_t clusters = tree.nodes.size();
   SourceLists lists;
   lists.begin.assign(clusters + 1, 0);
-  const auto for_sources = [&](std::uint32_t receiver, std::uint32_t source, const auto& use) {
-    if (kind == LinkKind::mid)
+  // Of links that are mid because they are faint the error is as faint.
+  const auto for_sources = [&](const Link& link, std::uint32_t receiver, std::uint32_t source, const auto& use) {
+    if (kind == LinkKind::mid && link.kind == LinkKind::far)
       for_small_parts(tree, source, tree.nodes[receiver], use);
     else
       use(source);
   };
-  const auto count = [&](std::uint32_t receiver, std::uint32_t source) {
-    for_sources(receiver, source, [&](std::uint32_t) { ++lists.begin[receiver + 1]; });
+  std::uint64_t entries = 0;
+  const auto count = [&](const Link& link, std::uint32_t receiver, std::uint32_t source) {
+    for_sources(link, receiver, source, [&](std::uint32_t) {
+      ++lists.begin[receiver + 1];
+      ++entries;
+    });
   };
   for (std::size_t k = 0; k < links.size; ++k)
     if (kinds[k] == kind) {
-      count(links[k].a, links[k].b);
-      if (links[k].a != links[k].b) count(links[k].b, links[k].a);
+      count(links[k], links[k].a, links[k].b);
+      if (links[k].a != links[k].b) count(links[k], links[k].b, links[k].a);
     }
+  if (entries > 0xffffffffu)
+    throw std::length_error("radiosity: more than 2^32 entries of a list; a larger radiosity.epsilon has less");
   for (std::size_t k = 0; k < clusters; ++k)
     lists.begin[k + 1] += lists.begin[k];
   lists.source.resize(lists.begin.back());
@@ -93,7 +100,7 @@ SourceLists rows_of(const ClusterTree& tree, View<Link> links, const std::vector
   const auto add = [&](std::uint32_t receiver, std::uint32_t source, const Link& link) {
     const bool own = link.point_shares != no_point_shares;
     const std::uint32_t skipped = receiver == link.a ? 0 : tree.nodes[link.a].count;
-    for_sources(receiver, source, [&](std::uint32_t part) {
+    for_sources(link, receiver, source, [&](std::uint32_t part) {
       lists.source[next[receiver]] = part;
       lists.share[next[receiver]] = link.visible;
       lists.own_share[next[receiver]++] = own ? link.point_shares + skipped : no_point_shares;

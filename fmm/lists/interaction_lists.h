@@ -13,8 +13,9 @@ struct SourceLists {
   std::vector<std::uint32_t> own_share; ///< where those of the receiver's points begin, or no_point_shares
 };
 
-/// Both directions of every link. Partly visible far links whose points have shares of their own are mid. A point reads
-/// the near and mid rows of its leaf and of all clusters above it.
+/// Both directions of every link. Far links whose points have shares of their own are mid, their sources divided until
+/// they are small as seen from the receiver. A point reads the near and mid rows of its leaf and of all clusters above
+/// it.
 struct InteractionLists {
   SourceLists far, mid, near_;
 };
@@ -34,7 +35,7 @@ struct ListOptions {
 
 /// `point_shares`: how many there are for links to refer to. Throws std::invalid_argument on a link to a cluster that
 /// is not there, of a cluster with itself unless it is a near leaf, with a share outside (0, 1], or whose points'
-/// shares are not there; std::length_error on more than 2^31 links.
+/// shares are not there; std::length_error on more than 2^31 links or 2^32 entries.
 InteractionLists make_interaction_lists(const ClusterTree& tree, View<Link> links, std::size_t point_shares,
                                         const Grids& grids, const ListOptions& options);
 

@@ -70,17 +70,19 @@ void sweep(Problem& problem, const std::array<double, 3>& emitted, Eigen::Vector
   // The rate is that of the power: while light goes from room to room the relative residual does not fall.
   if (!solution.history.empty() && solution.history.back() > 0.0) solution.rate = of_power / solution.history.back();
   solution.history.push_back(of_power);
-  solution.residual = std::max(of_power, problem.relative(next - b, next));
+  const double residual = std::max(of_power, problem.relative(next - b, next));
+  solution.settling = solution.residual > 0.0 ? residual / solution.residual : 0.0;
+  solution.residual = residual;
   ++solution.sweeps;
   ++solution.applies;
   b = next;
 }
 
-/// Jacobi sweeps that are left until the tolerance is reached, at the last sweep's rate.
+/// Jacobi sweeps that are left until the tolerance is reached, as the last one settled.
 double sweeps_left(const Solution& solution, double tolerance) {
-  if (!(solution.rate < 1.0)) return INFINITY;
-  if (solution.rate <= 0.0) return 0.0;
-  return std::log(tolerance / solution.residual) / std::log(solution.rate);
+  if (!(solution.settling < 1.0)) return INFINITY;
+  if (solution.settling <= 0.0) return 0.0;
+  return std::log(tolerance / solution.residual) / std::log(solution.settling);
 }
 
 /// Jacobi until converged, until the rate says that it keeps its light, or until `most` sweeps were made.
@@ -100,7 +102,8 @@ bool jacobi(Problem& problem, const std::array<double, 3>& emitted, const SolveO
 /// Krylov and a sweep in turn. False when that did not end it.
 bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options, Eigen::VectorXd& b,
                 Solution& solution) {
-  constexpr int most_turns = 6; // another linearisation point changes little: two are the rule
+  constexpr int most_turns = 6;        // another linearisation point changes little: two are the rule
+  constexpr double least_inner = 1e-7; // below it are roundings of the device's floats
   double inner = 0.3 * options.tolerance;
   for (int turn = 0; turn < most_turns && solution.applies < options.most_applies; ++turn) {
     const double before = solution.residual;
@@ -116,7 +119,7 @@ bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const So
     }
     if (!(solution.residual < 0.7 * before)) return false;
     // What is left is measured otherwise than by Krylov's root mean square: in dark places by far.
-    inner *= std::min(0.3, options.tolerance / solution.residual);
+    inner = std::max(least_inner, inner * std::min(0.3, options.tolerance / solution.residual));
   }
   return false;
 }
@@ -143,7 +146,7 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
   }
   if (jacobi(problem, emitted, options, options.first_sweeps, b, solution)) return finish();
   // Light that is kept leaves the residual where it began; far below that a rate of 1 is rounding.
-  const auto keeps = [&] { return !(solution.rate < options.largest_rate) && !(solution.residual < 0.01); };
+  const auto keeps = [&] { return !(solution.rate < options.largest_rate) && !(solution.history.back() < 0.01); };
   if (!keeps() && options.krylov && sweeps_left(solution, options.tolerance) > options.patient_sweeps) {
     const Eigen::VectorXd kept = b;
     if (accelerate(problem, emitted, options, b, solution)) return finish();

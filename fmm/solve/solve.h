@@ -33,6 +33,7 @@ struct Solution {
   SolveEnd end = SolveEnd::stalled;
   double residual = 0.0; ///< of `radiosity`, as SolveOptions::tolerance
   double rate = 0.0;     ///< share of the light that the last Jacobi sweep kept
+  double settling = 0.0; ///< share of the residual that it left
   unsigned applies = 0;  ///< of the operator: what the time goes with
   unsigned sweeps = 0;   ///< of these, Jacobi's
   unsigned krylov_steps = 0;

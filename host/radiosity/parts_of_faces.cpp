@@ -86,8 +86,7 @@ std::vector<std::uint32_t> parts_of_faces(View<Splat> points, const AskSegments&
     for (auto site = static_cast<std::uint32_t>(begin); site < end; ++site) {
       const unsigned found = sites.nearest(site, neighbours, near);
       for (const std::uint32_t a : sites.points(site)) {
-        for (const std::uint32_t b : sites.points(site))
-          ask_pair(a, b);
+        if (a != *sites.points(site).begin()) ask_pair(*sites.points(site).begin(), a); // not each with each
         for (unsigned k = 0; k < found; ++k)
           for (const std::uint32_t b : sites.points(near[k].site)) {
             ask_pair(a, b);
@@ -99,8 +98,17 @@ std::vector<std::uint32_t> parts_of_faces(View<Splat> points, const AskSegments&
   std::vector<Segment> segments;
   for (std::uint32_t k = 0; k < count; ++k)
     segments.push_back({k, count + k});
-  for (const std::vector<Segment>& part : asked)
+  for (std::vector<Segment>& part : asked) {
     segments.insert(segments.end(), part.begin(), part.end());
+    part = {};
+  }
+  // Neighbours of each other were found from both sides.
+  const auto pair_of = [](const Segment& s) { return std::pair(s.from, s.to); };
+  std::sort(segments.begin() + count, segments.end(),
+            [&](const Segment& a, const Segment& b) { return pair_of(a) < pair_of(b); });
+  segments.erase(std::unique(segments.begin() + count, segments.end(),
+                             [&](const Segment& a, const Segment& b) { return pair_of(a) == pair_of(b); }),
+                 segments.end());
   const std::vector<std::uint8_t> blocked = ask(ends, segments);
   Sets sets(count);
   for (std::size_t k = count; k < segments.size(); ++k)

@@ -57,13 +57,15 @@ std::uint64_t default_vmap_rays(std::size_t points, const RadiositySettings& set
 }
 
 /// The tree over them, and their places in its order.
-void cluster(Session& session, const ExchangeScene& scene, float step_delta, RadiosityMap& map) {
+void cluster(Session& session, const ExchangeScene& scene, float step_delta, bool thesis, RadiosityMap& map) {
   const std::vector<std::uint32_t> places = exchanging_points(scene);
   const std::vector<Splat> points = points_at(scene, places);
   const auto ask = [&](View<Splat> ends, View<Segment> segments) {
     return DeviceVisibility(session, scene.pools, scene.variant, ends, step_delta).blocked(segments);
   };
-  map.tree = build_clusters(points, ClusterOptions{}, parts_of_faces(points, ask));
+  std::vector<std::uint32_t> parts;
+  if (!thesis) parts = parts_of_faces(points, ask);
+  map.tree = build_clusters(points, ClusterOptions{}, parts);
   for (const std::uint32_t k : map.tree.order)
     map.place.push_back(places[k]);
 }
@@ -75,7 +77,7 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   RadiosityMap map;
   const TraversalVariant& variant = scene.variant;
   const auto step_delta = static_cast<float>(variant.step_delta / scene.side);
-  cluster(session, scene, step_delta, map);
+  cluster(session, scene, step_delta, settings.vmap == "thesis", map);
   if (map.place.empty()) return map;
   DeviceVisibility oracle(session, scene.pools, variant, map.tree.points, step_delta);
   LinkOptions options;

@@ -31,7 +31,7 @@ struct RadiosityMap {
   ClusterTree tree;
   std::vector<std::uint32_t> place; ///< in the pool, of each point in the tree's order
   VMap vmap;
-  bool kept = false; ///< from an earlier run: nothing was asked
+  bool kept = false; ///< from an earlier run: its links were not asked for
 };
 
 /// Builds the clusters and asks the device for their visibility; where no splat exchanges light, asks nothing. Throws

@@ -127,7 +127,8 @@ std::array<float, 16> world_to_ndc(const Scene& scene) {
 namespace {
 
 /// Where rays by the cosine look for emitting splats besides the samples on them (kernels/lights/emitter.cl): nearer
-/// than this the density of samples, spread evenly over the area A, is below 1 / pi per solid angle.
+/// than this the density of samples is below 1 / pi per solid angle, were it even over their area. One box for all of
+/// them.
 void set_reach(View<Splat> points, DeviceLighting& lighting) {
   RenderParams& params = lighting.params;
   if (lighting.emitters.empty()) return;

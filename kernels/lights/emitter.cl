@@ -1,5 +1,5 @@
 /* Splats that shine: area lights. Light from far is sampled on them; of what is near, where such an estimate grows as
- * 1/d^2, rays by the cosine find a part, and the two share by the balance heuristic: no estimate is above pi L. */
+ * 1/d^2, rays by the cosine find a part, and the two share by the balance heuristic: no estimate is above pi times the brightest L. */
 #include "lights/light_sample.cl"
 
 /* Whether a surface may be nearer to an emitting splat than RenderParams::emitter_reach: where the density of light samples
@@ -11,7 +11,7 @@ static inline bool is_near_emitters(const Surface* s, __constant RenderParams* p
 }
 
 /* One emitting splat in proportion to its power, one point on the disc of its effective area: H = L A cos cos' / (d^2 p);
- * nearer than `reach` what rays by the cosine leave of it. False where the light does not reach the surface's front whatever stands between. */
+ * nearer than `reach` diffuse_weight is what rays by the cosine leave of it. False where the light does not reach the surface's front whatever stands between. */
 static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global Material* materials,
                                   const __global Emitter* emitters, uint emitter_count, float reach, float4 u,
                                   LightSample* sample) {
@@ -38,7 +38,7 @@ static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global 
   sample->towards = towards;
   sample->irradiance = load3(material->emission) * (area * cosine * cosine_at_light / (d2 * share));
   if (exact2 < reach * reach)
-    sample->irradiance *= mis_weight(material->emitter_density * exact2 / fmax(cosine_at_light, 1e-6f), INVERSE_PI * cosine);
+    sample->diffuse_weight = mis_weight(material->emitter_density * exact2 / fmax(cosine_at_light, 1e-6f), INVERSE_PI * cosine);
   sample->normal = normal.xyz;
   sample->radius = centre.w;
 #ifdef HAS_LOBES

@@ -40,6 +40,7 @@ typedef struct LightSample {
   float3 irradiance;
   float3 normal; /* of the emitting disc; 0 where the light is none, as its radius */
   float radius;
+  float diffuse_weight; /* of `irradiance` where the surface reflects diffusely: rays by the cosine count the rest */
 #ifdef HAS_LOBES
   float pdf; /* of light sampling, per solid angle; 0: no ray that is sent out can meet this light */
 #endif

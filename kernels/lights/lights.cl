@@ -143,6 +143,7 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
 #endif
     LightSample light;
     bool faces = false;
+    light.diffuse_weight = 1.0f;
 #ifdef HAS_LIGHT_SOURCES
     if (i < source_samples)
       faces = sample_light_source(s, lights, u, i, &light);
@@ -157,7 +158,7 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
       faces = sample_sky(s, lights, u, i - source_samples - emitter_samples, &light);
 #endif
     if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays)) {
-      sum += light.irradiance;
+      sum += light.diffuse_weight * light.irradiance;
 #ifdef HAS_LOBES
       const __global Material* material = lights.materials + s->material;
       if (has_flag(material, MATERIAL_HAS_LOBE)) {

@@ -51,7 +51,8 @@ typedef struct OctreePoint {
 #define SHEET_BACK 0.5f
 #define SHEET_SIDE(material) (0.25f * (float)((pg_uint)((material)*4.0f) & 3u))
 
-/* A splat of a shape whose faces are planes: its disc lies in the true surface, and sticks out of it nowhere. */
+/* A splat of a shape whose faces are planes: its disc lies in the true surface, and sticks out of it nowhere. Kernels
+ * heed it where HAS_CLIPS: such shapes have borders. */
 #define FLAT 0.125f
 #define IS_FLAT(material) (((pg_uint)((material)*8.0f) & 1u) != 0u)
 #define MOST_MATERIALS 2097152u /* 2^21: below it a float holds the eighths */

@@ -20,6 +20,8 @@ constexpr unsigned few_points = 8;
 
 /// Faces of shapes into which a cell is divided at most; it has eight octants.
 constexpr std::size_t most_faces = 8;
+/// Fewer points a face than this, in the mean, are not divided: many small boxes would end in leaves of one point each.
+constexpr std::uint32_t few_of_face = 3;
 /// More points than this are not looked at: a cell that large holds many faces.
 constexpr std::uint32_t most_divided_by_face = 1u << 20;
 /// Planes are one plane within this: 1 - cosine, and root cube units: a few roundings.
@@ -222,8 +224,8 @@ private:
     for (std::uint32_t i = 0; i < part.count; ++i) {
       octant[i] = 0;
       for (int a = 0; a < 3; ++a) {
-        const auto cell =
-            static_cast<std::uint32_t>(static_cast<double>(clusters_.points[part.first + i].position[a]) * cells);
+        const double along = static_cast<double>(clusters_.points[part.first + i].position[a]) * cells;
+        const auto cell = static_cast<std::uint32_t>(std::min(std::max(0.0, along), cells - 1.0));
         octant[i] |= static_cast<std::uint8_t>((cell & 1u) << a);
       }
     }
@@ -256,12 +258,13 @@ private:
     return parts;
   }
 
-  /// Where a part holds points of a few flat faces these divide it, and what lies on one only: a cluster of two faces
-  /// neither faces anything as a whole nor is hidden or seen as one. Else the octants of its cell do. Empty: a leaf.
+  /// Where a part holds several points of each of a few flat faces these divide it, and what lies on one only: a
+  /// cluster of two faces neither faces anything as a whole nor is hidden or seen as one. Else the octants of its cell
+  /// do. Empty: a leaf.
   std::vector<Part> parts_of(const Part& part) {
     std::vector<std::uint8_t> kind(part.count);
     const std::uint32_t faces = part.count > most_divided_by_face ? 0 : faces_of(part, kind);
-    if (faces > 1) return sorted_by_kind(part, kind, faces, part.level);
+    if (faces > 1 && part.count >= few_of_face * faces) return sorted_by_kind(part, kind, faces, part.level);
     if (ends_here(part)) return {};
     octants_of(part, kind);
     return sorted_by_kind(part, kind, 8, part.level + 1);

@@ -21,7 +21,8 @@ struct Link {
   /// Where the shares that each point sees of the other cluster begin (octree/vmap/point_shares.h): one a point of a,
   /// then one a point of b; or no_point_shares: `visible` holds for all of them.
   std::uint32_t point_shares = no_point_shares;
-  bool open = false; ///< nothing is known that could hide points of the one from points of the other: none of them asks
+  /// While links are made: nothing is known that could hide points of the one from points of the other, and none asks.
+  bool open = false;
 };
 
 } // namespace pointgi

@@ -54,8 +54,8 @@ struct VMap {
 /// one link, save for what sampling misses. Segments run between points that face each other, stratified by area, and
 /// depend on the pair and the seed alone: the same links for any number of threads and any batch. Throws
 /// std::invalid_argument on options out of range, and what the oracle throws.
-/// `obstacles`: all splats that block: pairs between which none can stand ask nothing, and of the others every point
-/// asks. Empty: what all segments of a pair find free is taken as open.
+/// `obstacles`: all splats that block: where some of them are flat, pairs between which none can stand ask nothing, and
+/// of the others every point asks. Empty: what all segments of a pair find free is taken as open.
 VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options,
                 View<Splat> obstacles = {});
 

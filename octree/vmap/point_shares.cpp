@@ -126,7 +126,7 @@ private:
   std::uint32_t group_ = 1; ///< points that share an answer
 };
 
-/// Gives every partly visible link a place for its shares; these links and the length of all shares.
+/// Gives every link that is not open a place for its shares; these links and the length of all shares.
 std::pair<std::vector<const Link*>, std::size_t> place_shares(const ClusterTree& tree, std::vector<Link>& links) {
   std::vector<const Link*> partial;
   std::size_t all = 0;

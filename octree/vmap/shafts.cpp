@@ -144,7 +144,8 @@ Shafts::Shafts(View<Splat> splats) : tree_(build_clusters(splats, {})) {
 Shafts::Box Shafts::box_of(const Splat& disc) {
   Box box;
   for (int k = 0; k < 3; ++k) {
-    const float reach = disc.radius * std::sqrt(std::max(0.0f, 1.0f - disc.normal[k] * disc.normal[k]));
+    // Not from 1 - n², which near 1 has lost its digits.
+    const float reach = 1.000001f * disc.radius * std::hypot(disc.normal[(k + 1) % 3], disc.normal[(k + 2) % 3]);
     box.low[k] = disc.position[k] - reach;
     box.high[k] = disc.position[k] + reach;
   }
@@ -156,7 +157,7 @@ Obstacles Shafts::between(const Cluster& a, const Cluster& b) const {
   std::vector<std::uint32_t> waiting{0};
   Obstacles found = Obstacles::none;
   for (int looks = 0; !waiting.empty(); ++looks) {
-    if (looks > most_looks) return Obstacles::some;
+    if (looks > most_looks) return Obstacles::own;
     const std::uint32_t at = waiting.back();
     const Cluster& node = tree_.nodes[at];
     waiting.pop_back();

@@ -8,7 +8,7 @@ namespace pointgi {
 
 enum class Obstacles {
   none, ///< every point of the one sees every point of the other that it faces
-  own,  ///< discs that may belong to the surfaces at the two ends, as those of a bent surface do
+  own,  ///< discs that may belong to the surfaces at the two ends, as those of a bent surface do; or it is not known
   some  ///< something may hide points of the one from points of the other
 };
 
@@ -19,7 +19,7 @@ public:
   /// `splats`: all that block.
   explicit Shafts(View<Splat> splats);
 
-  /// `some` as well where the question takes too long.
+  /// `own` as well where the question takes too long.
   Obstacles between(const Cluster& a, const Cluster& b) const;
 
 private:
