@@ -38,8 +38,8 @@ struct ClusterOptions {
 };
 
 /// Builds the tree over the splats that take part in diffuse exchange. Backs of sheets have a tree of their own beside
-/// the others', below one root. Cells are divided into octants, but where a few flat faces divide them these do: then
-/// no cluster holds points of two. `part`: of each splat, of points of one plane those of one number are one face
+/// the others', below one root. Cells are divided into octants, but where a few flat faces of several points each
+/// cross them these do. `part`: of each splat, of points of one plane those of one number are one face
 /// (host/radiosity/parts_of_faces.h); empty: all are. Deterministic for any number of threads.
 /// Throws std::invalid_argument on options out of range, or on parts of another number of splats.
 ClusterTree build_clusters(View<Splat> splats, const ClusterOptions& options, View<std::uint32_t> part = {});
