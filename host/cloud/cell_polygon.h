@@ -31,8 +31,13 @@ public:
   void cut(const Eigen::Vector2d& neighbour) {
     const double distance2 = neighbour.squaredNorm();
     if (is_beyond(distance2)) return;
+    cut_at(neighbour, 0.5 * distance2);
+  }
+
+  /// Keeps what has axis . x <= limit (>= 0).
+  void cut_at(const Eigen::Vector2d& axis, double limit) {
     std::array<double, capacity> beyond;
-    const int first = measure(neighbour, 0.5 * distance2, beyond);
+    const int first = measure(axis, limit, beyond);
     if (first < 0 || count_ == capacity) return; // 62 cuts deep: what is left off by then is below rounding
     // Corners beyond the bisector follow each other: from `first` up to, not including, `past`.
     int past = first;
@@ -57,6 +62,19 @@ public:
     }
     return 0.5 * twice;
   }
+  /// Whether holds(corner) is true of every corner.
+  template <class Holds>
+  bool all_corners(const Holds& holds) const {
+    return std::all_of(corner_.begin(), corner_.begin() + count_,
+                       [&](const Corner& c) { return holds(Eigen::Vector2d(c.x, c.y)); });
+  }
+  /// How far the polygon reaches along `axis` (unit).
+  double reach_along(const Eigen::Vector2d& axis) const {
+    double most = 0;
+    for (int c = 0; c < count_; ++c)
+      most = std::max(most, corner_[c].x * axis.x() + corner_[c].y * axis.y());
+    return most;
+  }
   /// Squared distance of the farthest corner: a disc of that radius covers the cell.
   double reach2() const { return reach2_; }
   /// Whether some edge is still one of the octagon's: no neighbour bounds the cell there.
@@ -73,13 +91,13 @@ private:
 
   int next(int c) const { return c + 1 < count_ ? c + 1 : 0; }
 
-  /// How far each corner lies beyond the bisector, times the distance; the first that does so after one that does not,
+  /// How far each corner lies beyond the line, times the axis' length; the first that does so after one that does not,
   /// or -1.
-  int measure(const Eigen::Vector2d& neighbour, double half, std::array<double, capacity>& beyond) const {
+  int measure(const Eigen::Vector2d& axis, double limit, std::array<double, capacity>& beyond) const {
     int first = -1;
-    double before = corner_[count_ - 1].x * neighbour.x() + corner_[count_ - 1].y * neighbour.y() - half;
+    double before = corner_[count_ - 1].x * axis.x() + corner_[count_ - 1].y * axis.y() - limit;
     for (int c = 0; c < count_; ++c) {
-      beyond[c] = corner_[c].x * neighbour.x() + corner_[c].y * neighbour.y() - half;
+      beyond[c] = corner_[c].x * axis.x() + corner_[c].y * axis.y() - limit;
       if (beyond[c] > 0 && before <= 0) first = c;
       before = beyond[c];
     }

@@ -1,9 +1,11 @@
 #include "host/cloud/complete.h"
 #include "host/cloud/cloud_warnings.h"
+#include "host/cloud/disc_borders.h"
 #include "host/cloud/drop_points.h"
 #include "host/cloud/find_kind.h"
 #include "host/cloud/find_normals.h"
 #include "host/cloud/keep_points.h"
+#include "host/cloud/mesh_borders.h"
 #include "host/cloud/size_limits.h"
 #include "host/cloud/splat_size.h"
 #include "host/cloud/strays.h"
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <utility>
 
 namespace pointgi {
 
@@ -90,6 +93,13 @@ void complete_body(PointCloud& cloud, const Sites& sites, std::vector<float>&& d
     turn_round(cloud);
     report.normals_from += ", turned round as asked for";
   }
+  if (own_radii) return;
+  const bool from_faces = sampled || !cloud.triangle.empty();
+  if (!cloud.triangle.empty()) borders_from_faces(cloud, cloud.radius);
+  BorderEvidence evidence{
+      from_faces ? std::exchange(cloud.clipped, {}) : std::move(sizes.rims), from_faces, signs_given, {}};
+  if (report.stations.size() == 1 && options.normals != NormalSource::flip) evidence.sensor = report.stations[0];
+  clip_discs(cloud, sites, spacing.spacing, std::move(evidence));
 }
 
 /// The cloud's strays, a value a point; empty: none, or not looked for.
@@ -127,6 +137,11 @@ void complete_around_strays(PointCloud& cloud, const std::vector<char>& strays, 
   body.stations = cloud.stations;
   Sites sites(body.position);
   complete_body(body, sites, keep_neighbours_and_spacings(sites, kept_neighbours), options, report);
+  std::vector<std::uint32_t> number; // of each point of the body in the cloud
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (!strays[i]) number.push_back(i);
+  for (const ClippedPoint& c : body.clipped)
+    cloud.clipped.push_back({number[c.point], c.clip});
   cloud.normal.resize(cloud.size());
   cloud.radius.resize(cloud.size());
   cloud.area.resize(cloud.size());
@@ -186,6 +201,8 @@ void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudRepo
     return;
   }
 
+  const bool normals_of_faces = cloud.normal.empty() && options.normals != NormalSource::estimate;
+  if (normals_of_faces && !cloud.triangle.empty() && !has_doubled_faces(cloud)) split_at_edges(cloud);
   auto sites = std::make_unique<Sites>(cloud.position);
   std::vector<float> spacing = keep_neighbours_and_spacings(*sites, kept_neighbours);
   const std::vector<char> strays = strays_of(cloud, *sites, spacing, options);

@@ -35,6 +35,13 @@ void keep_triangles(PointCloud& cloud, const std::vector<std::uint32_t>& number)
   cloud.triangle.erase(std::remove_if(cloud.triangle.begin(), cloud.triangle.end(), broken), cloud.triangle.end());
 }
 
+void keep_clips(PointCloud& cloud, const std::vector<std::uint32_t>& number) {
+  std::size_t kept = 0;
+  for (const ClippedPoint& clipped : cloud.clipped)
+    if (number[clipped.point] != gone) cloud.clipped[kept++] = {number[clipped.point], clipped.clip};
+  cloud.clipped.resize(kept);
+}
+
 } // namespace
 
 std::size_t keep_points(PointCloud& cloud, const std::function<bool(std::size_t)>& wanted) {
@@ -44,6 +51,7 @@ std::size_t keep_points(PointCloud& cloud, const std::function<bool(std::size_t)
   for (std::size_t i = 0; i < n; ++i)
     number[i] = wanted(i) ? static_cast<std::uint32_t>(kept++) : gone;
   keep_triangles(cloud, number);
+  keep_clips(cloud, number);
   if (kept == n) return 0;
   if (cloud.record.empty())
     cloud.record = first_records(number, kept);

@@ -53,8 +53,8 @@ struct PointCloud {
   std::vector<Field> fields;           ///< those that were asked for (ReadRequest), and what stands in for colours
   std::vector<std::array<std::uint32_t, 3>> triangle; ///< faces, where the file has any; indices into `position`
   std::vector<Eigen::Vector3d> stations;              ///< positions of scanners; not an attribute of points
-  std::vector<ClippedPoint> clipped; ///< of shapes: points that end at borders, ascending; not an attribute
-  bool normals_unsigned = false;     ///< `normal` tells the plane of the surface, and either side of it
+  std::vector<ClippedPoint> clipped;                  ///< points that end at borders, ascending; not an attribute
+  bool normals_unsigned = false; ///< `normal` tells the plane of the surface, and either side of it
 
   std::size_t size() const { return position.size(); }
 };

@@ -24,6 +24,8 @@ constexpr double longest_reach = 3.0; // of a cell on its open side, in spacings
 constexpr float largest_step =
     3.0f; // of the spacing, that cells reach across (with longest_reach: a 16-fold density step)
 constexpr double widest_gap = 125.0 / 180.0 * pi; // between neighbours; wider and the surface ends there
+constexpr double straight_gap = 1.1 * pi;         // up to here the boundary is straight; wider, and it turns a corner
+constexpr double corner_gap = 1.6 * pi;           // up to here
 constexpr double least_cosine = 0.7;     // of neighbours' normals; where they are rougher discs would grow into blobs
 constexpr unsigned alike_candidates = 8; // points looked at, of those that share a site
 
@@ -49,6 +51,9 @@ public:
   /// disc tilted by an angle covers its cosine of the way across. 1 on smooth surfaces. Of the cell made last.
   double widening() const { return widening_; }
 
+  /// Where the surface ends beside the cell made last, local units; an axis of 0 in strips that say nothing.
+  const ClipStrips& rim() const { return rim_; }
+
   void go_to(std::uint32_t site) {
     site_ = site;
     found_ = 0;
@@ -56,6 +61,7 @@ public:
 
   Cell cell(const Eigen::Vector3f& normal) {
     const TangentFrame frame(normal.cast<double>());
+    rim_ = {};
     if (const std::optional<Cell> found = smooth_cell(frame)) return *found;
     for (std::size_t stage = 0;; ++stage) {
       const bool last = stage + 1 == neighbour_stages.size() || sites_.size() - 1 <= neighbour_stages[stage];
@@ -71,7 +77,7 @@ public:
       }
       if (!last) continue;
       lay_flat(frame, count, nullptr);
-      return bounded_cell(count);
+      return bounded_cell(frame, count);
     }
   }
 
@@ -146,7 +152,7 @@ private:
   }
 
   /// The cell of a point at the rim of what its neighbours span, or beside a large step in density.
-  Cell bounded_cell(unsigned count) {
+  Cell bounded_cell(const TangentFrame& frame, unsigned count) {
     const double own = spacing_[site_];
     // An isolated site lies farther off than its spacing, which is its neighbours', can explain.
     const bool isolated = count > 0 && spacing_of(near_.data(), count) > spacing_[site_] * 1.001f;
@@ -161,24 +167,24 @@ private:
       const float most = *std::max_element(middle, ordered_.begin() + candidates_);
       largest = std::max(own, static_cast<double>(std::min(most, largest_step * *middle)));
     }
-    CellPolygon polygon = bounded_polygon(longest_reach * largest, own, isolated);
+    CellPolygon polygon = bounded_polygon(frame, longest_reach * largest, own, isolated);
     const bool open = polygon.open();
     if (open && largest > own)
-      polygon = bounded_polygon(longest_reach * own, own, isolated); // not filled by neighbours either
+      polygon = bounded_polygon(frame, longest_reach * own, own, isolated); // not filled by neighbours either
     return {polygon.area(), std::sqrt(polygon.reach2()), isolated || open};
   }
 
-  CellPolygon bounded_polygon(double reach, double own, bool isolated) {
+  CellPolygon bounded_polygon(const TangentFrame& frame, double reach, double own, bool isolated) {
     CellPolygon polygon(reach);
     for (unsigned j = 0; j < candidates_; ++j)
       polygon.cut(candidate_[j].offset);
-    close_gaps(polygon, 2.0 * reach, own, isolated);
+    close_gaps(frame, polygon, 2.0 * reach, own, isolated);
     return polygon;
   }
 
   /// Where no neighbour within `view` is seen over a wide angle the surface ends: neighbours are made up one local
   /// spacing away, so that the cell ends half a spacing outside.
-  void close_gaps(CellPolygon& polygon, double view, double own, bool isolated) {
+  void close_gaps(const TangentFrame& frame, CellPolygon& polygon, double view, double own, bool isolated) {
     unsigned seen = 0;
     double nearest = std::numeric_limits<double>::max();
     for (unsigned j = 0; j < candidates_; ++j) {
@@ -203,6 +209,7 @@ private:
     for (unsigned a = 0; a < seen; ++a) {
       const double gap = gap_after(a);
       if (gap <= widest_gap) continue;
+      if (!isolated) set_rim(frame, angle_[a], gap, 0.5 * distance);
       const int ghosts = std::max(1, static_cast<int>(std::ceil(gap / (0.5 * pi) - 0.05)) - 1);
       for (int g = 1; g <= ghosts; ++g) {
         const double angle = angle_[a] + gap * g / (ghosts + 1);
@@ -210,6 +217,18 @@ private:
       }
     }
     if (candidates_ == 0) polygon.cut({distance, 0.0}); // a square
+  }
+
+  /// Of a gap that begins at the angle `from`.
+  void set_rim(const TangentFrame& frame, double from, double gap, double limit) {
+    const auto strip = [&](double angle) {
+      return ClipStrips::Strip{std::cos(angle) * frame.u + std::sin(angle) * frame.v,
+                               -std::numeric_limits<double>::infinity(), limit};
+    };
+    if (gap <= straight_gap)
+      rim_.strip = {strip(from + 0.5 * gap), {}};
+    else if (gap <= corner_gap)
+      rim_.strip = {strip(from + 0.5 * pi), strip(from + gap - 0.5 * pi)};
   }
 
   const Sites& sites_;
@@ -221,6 +240,7 @@ private:
   unsigned found_ = 0;
   unsigned candidates_ = 0;
   double widening_ = 1.0;
+  ClipStrips rim_;
   SmoothCell smooth_;
   std::array<Neighbour, neighbour_stages.back()> near_;
   std::array<Candidate, neighbour_stages.back()> candidate_;
@@ -262,9 +282,11 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
   sizes.radius.resize(normals.size());
   sizes.area.resize(normals.size());
   std::atomic<std::size_t> capped{0};
+  constexpr std::size_t grain = 512;
+  std::vector<std::vector<ClippedPoint>> rims((sites.size() + grain - 1) / grain);
   const double unit = sites.unit();
   const double usual = median(spacing.spacing.size(), [&](std::size_t s) { return spacing.spacing[s]; });
-  parallel_ranges(sites.size(), 512, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(sites.size(), grain, [&](std::size_t begin, std::size_t end) {
     CellMaker maker(sites, normals, spacing, faces_agree);
     std::size_t capped_here = 0;
     for (std::size_t s = begin; s < end; ++s) {
@@ -278,6 +300,7 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
         sizes.radius[point] = positive_float(reach * splat_overlap * (noisy ? maker.widening() : 1.0) * unit);
         sizes.area[point] = positive_float(cell.area / sharing * unit * unit);
         capped_here += cell.capped;
+        if (!maker.rim().strip[0].axis.isZero(0)) rims[begin / grain].push_back({point, maker.rim()});
       };
       if (points.size() == 1) {
         set(*points.begin(), maker.cell(spacing.normal[s]), 1.0);
@@ -295,6 +318,11 @@ SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& n
     capped += capped_here;
   });
   sizes.capped = capped;
+  for (const auto& part : rims)
+    sizes.rims.insert(sizes.rims.end(), part.begin(), part.end());
+  for (ClippedPoint& rim : sizes.rims)
+    for (ClipStrips::Strip& strip : rim.clip.strip)
+      strip.high *= unit;
   return sizes;
 }
 

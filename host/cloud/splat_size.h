@@ -1,13 +1,15 @@
 #pragma once
 /// Effective areas and splat radii of a cloud with normals: both from one Voronoi cell a point.
+#include "host/cloud/point_cloud.h"
 #include "host/cloud/site_spacing.h"
 
 namespace pointgi {
 
 struct SplatSizes {
-  std::vector<float> radius; ///< a value a point, world units, > 0
-  std::vector<float> area;   ///< a value a point, world units squared, > 0
-  std::size_t capped = 0;    ///< points whose cell no neighbour bounds on some side, so that the spacing there does
+  std::vector<float> radius;      ///< a value a point, world units, > 0
+  std::vector<float> area;        ///< a value a point, world units squared, > 0
+  std::vector<ClippedPoint> rims; ///< points at the boundary of an open surface, in any order, and where it ends
+  std::size_t capped = 0; ///< points whose cell no neighbour bounds on some side, so that the spacing there does
 };
 
 /// The cells (method.md §4: the sum of the areas is that of the surface). Each point's neighbours are laid flat into

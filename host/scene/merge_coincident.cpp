@@ -11,6 +11,7 @@ namespace pointgi {
 namespace {
 
 constexpr float alike_cosine = 0.5f;
+constexpr std::size_t most_alone = 16; // in one place
 
 /// Order by place and material; equal ones keep their order.
 bool before(const Splat& a, const Splat& b) {
@@ -129,7 +130,7 @@ Groups coincident_groups(const std::vector<Splat>& splats) {
 } // namespace
 
 std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vector<std::uint32_t>& id,
-                                          std::vector<CoincidentSides>* pairs) {
+                                          std::vector<CoincidentSides>* pairs, const std::vector<bool>& alone) {
   const Groups groups = coincident_groups(splats);
   if (groups.end.empty()) return {};
   std::vector<bool> gone(splats.size(), false);
@@ -139,8 +140,12 @@ std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vecto
     for (std::size_t k = begin; k < groups.end[group]; ++k) {
       const std::uint32_t index = groups.member[k];
       const Splat& s = splats[index];
-      auto side =
-          std::find_if(sides.begin(), sides.end(), [&](const auto& other) { return alike(other.second.first, s); });
+      const auto is_alone = [&](std::uint32_t splat) {
+        return !alone.empty() && sides.size() < most_alone && alone[id[splat]];
+      };
+      auto side = std::find_if(sides.begin(), sides.end(), [&](const auto& other) {
+        return alike(other.second.first, s) && !is_alone(index) && !is_alone(other.first);
+      });
       if (side == sides.end()) {
         sides.push_back({index, Sum{s}});
         side = sides.end() - 1;

@@ -75,6 +75,12 @@ void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& po
       cloud.area[i] *= scale * scale;
     }
   });
+  for (ClippedPoint& clipped : cloud.clipped)
+    for (ClipStrips::Strip& strip : clipped.clip.strip) {
+      strip.axis = pose.rotation * strip.axis;
+      strip.low *= settings.scale;
+      strip.high *= settings.scale;
+    }
 }
 
 /// What is known beyond the file, in the cloud's own coordinates: what the scene's camera and lamps see faces them.

@@ -3,6 +3,7 @@
 #include "host/run.h"
 #include "host/scene/sheet_sides.h"
 #include "host/view/default_light.h"
+#include <algorithm>
 #include <numeric>
 
 namespace pointgi {
@@ -45,6 +46,14 @@ void choose_view(Scene& scene, WorldSplats& splats, bool bare) {
     add_ground(scene, splats, view, Vector3d::Constant(0.5));
 }
 
+/// Whether each point ends at a border; empty where none does.
+std::vector<bool> points_with_borders(const WorldSplats& world) {
+  std::vector<bool> ends(world.clipped.empty() ? 0 : world.cloud.size(), false);
+  for (const ClippedPoint& clipped : world.clipped)
+    ends[clipped.point] = true;
+  return ends;
+}
+
 } // namespace
 
 PlacedSplats load_and_place(Scene& scene, bool bare) {
@@ -60,7 +69,7 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   placed.id.resize(placed.splats.size());
   std::iota(placed.id.begin(), placed.id.end(), 0u);
   std::vector<CoincidentSides> sides;
-  std::vector<MergedSplat> merged = merge_coincident(placed.splats, placed.id, &sides);
+  std::vector<MergedSplat> merged = merge_coincident(placed.splats, placed.id, &sides, points_with_borders(world));
   if (!merged.empty()) log_info("{} points that lie on others were merged with them", merged.size());
   if (one_file) placed.file_order = FileOrder{std::move(world.record), file_points, std::move(merged)};
   if (const std::size_t sheets = divide_sheets(scene, placed.splats, placed.id, world.cloud.structure, sides);

@@ -6,6 +6,14 @@
 #include "lib/ray.cl"
 #include "surface/disc.cl"
 
+/* A bent surface's discs are clipped where they would stick out of it (host/cloud/disc_borders.h): they are not met there,
+ * and their colour, light and normal reach as far as ever, or their borders would show. A flat disc's do end. */
+#ifdef HAS_CLIPS
+#define BLEND_BEGIN(blend) (blend)->t_begin
+#else
+#define BLEND_BEGIN(blend) (blend)->t_first
+#endif
+
 /* How far behind the first hit a disc still belongs to the same surface, in radii of the disc hit first. Overlapping
  * neighbours of a curved or noisy surface lie less than a radius apart along the ray. */
 #ifndef BLEND_DEPTH
@@ -43,6 +51,9 @@ typedef struct Blend {
   float t, weight;          /* `weight`: of normal and t */
   float weight_of_material; /* of albedo, irradiance and caustic */
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
+#ifdef HAS_CLIPS
+  float t_begin; /* what is clipped off a disc counts from here on */
+#endif
   float radius;
   uint splat, material;
 #ifdef HAS_CLIPS
@@ -67,14 +78,15 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t
   float3 normal = texel.xyz;
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
+  const float behind = fabs(t - b->t_first); /* in front is what was clipped off */
 #ifdef HAS_CLIPS
   /* Of two discs of which one is flat, the one behind the other is another surface. */
-  if ((b->flat || IS_FLAT(texel.w)) && (t - b->t_first) * fabs(dot3(normal, ray.direction)) > FLAT_HEIGHT)
+  if ((b->flat || IS_FLAT(texel.w)) && behind * fabs(dot3(normal, ray.direction)) > FLAT_HEIGHT)
     return;
 #endif
   /* A tiny floor keeps a lone disc visible out to its very rim. */
   const float rim = fmax(1.0f - q, 1e-3f);
-  const float depth = 1.0f - (t - b->t_first) / (b->t_end - b->t_first);
+  const float depth = 1.0f - behind / (b->t_end - b->t_first);
   const float w = rim * rim * depth, of_material = (uint)texel.w == b->material ? w : 0.0f;
   b->weight += w;
   b->weight_of_material += of_material;
@@ -116,6 +128,7 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float
   b->material = (uint)normal.w;
 #ifdef HAS_CLIPS
   b->flat = IS_FLAT(normal.w);
+  b->t_begin = fmax(ray.t_min, t - (b->t_end - t));
 #endif
   blend_add(POOL_ARGS, b, ray, splat, t, q, normal, albedo);
 }

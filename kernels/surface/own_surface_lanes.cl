@@ -5,10 +5,14 @@
 
 static inline lanes_i sheet_lanes(const BlockHits* h) { return (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u; }
 
+#ifdef HAS_CLIPS
+static inline lanes_i flat_lanes(const BlockHits* h) { return (((lanes_u)(h->flat) >> LANE_NUMBERS) & 1u) != 0u; }
+#endif
+
 /* is_apart in lanes. along: cosines of the discs' normals with the direction. */
 #ifdef HAS_CLIPS
 static inline lanes_i apart_lanes(lanes_f along, lanes_f distance, const BlockHits* h) {
-  return ((((lanes_u)(h->flat) >> LANE_NUMBERS) & 1u) != 0u) & (distance * fabs(along) > FLAT_HEIGHT);
+  return flat_lanes(h) & (distance * fabs(along) > FLAT_HEIGHT);
 }
 #else
 static inline lanes_i apart_lanes(lanes_f along, lanes_f distance, const BlockHits* h) { return (lanes_i)(0); }

@@ -186,7 +186,7 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
  * counts in the one cell that holds its hit, so it counts once. */
 static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   Walk walk;
-  walk_start(POOL_ARGS, &walk, ray, blend->t_first);
+  walk_start(POOL_ARGS, &walk, ray, BLEND_BEGIN(blend));
   float t_from = -INFINITY;
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
@@ -194,8 +194,8 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
       const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
       float q;
       const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t >= t_from && t < walk.t_exit && t >= blend->t_first && t < blend->t_end && i != blend->splat &&
-          !IS_CUT(i, ray, t, centre))
+      if (t >= t_from && t < walk.t_exit && t >= BLEND_BEGIN(blend) && t < blend->t_end && i != blend->splat &&
+          (IS_CUT(i, ray, t, centre) ? !IS_FLAT(normal.w) : t >= blend->t_first))
         blend_add(POOL_ARGS, blend, ray, i, t, q, normal, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
     })
     t_from = walk.t_exit;

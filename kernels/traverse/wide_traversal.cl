@@ -184,12 +184,16 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
 static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   const WideRay wide = wide_ray(ray);
   WALK_FROM_ROOT(walk);
-  for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, blend->t_first, blend->t_end)) != 0u;) {
+  for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, BLEND_BEGIN(blend), blend->t_end)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
       const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
-      const lanes_i met = h.inside & (h.t >= blend->t_first) & (h.t < blend->t_end) &
+      const lanes_i met = h.inside & (h.t >= BLEND_BEGIN(blend)) & (h.t < blend->t_end) &
                           as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
-      const lanes_i counts = UNCLIPPED_LANES(block, ray, h, met);
+      lanes_i counts = met;
+#ifdef HAS_CLIPS
+      const lanes_i unclipped = UNCLIPPED_LANES(block, ray, h, met);
+      counts = (unclipped & (h.t >= blend->t_first)) | (met & ~unclipped & ~flat_lanes(&h));
+#endif
       if (any_lane(counts)) {
         float t_of[WIDE_LANES];
         float q_of[WIDE_LANES];

@@ -112,12 +112,12 @@ TEST_CASE("scans: the right side lit, no pinholes") {
     CAPTURE(name);
     const auto [picture, stats] = render_scan(*path);
     // Seen from its front: backs are leaves and strays (lion, pond), and what shows through holes.
-    // The pond is islands of uneven, noisy points, seen from 35 degrees above: 0.31 of backs and 2.1e-4 of pinholes
-    // measured there.
+    // The pond is islands of uneven, noisy points, seen from 35 degrees above: 0.30 of backs and 3.7e-4 of pinholes
+    // measured there: each island ends where its points do.
     const bool islands = std::string(name) == "pond.ply";
     CHECK(stats["render"]["back_face_share"] < (islands ? 0.35 : 0.1));
     CHECK(stats["memory"]["host_peak_bytes"] < 1.5e9);
-    CHECK(pinhole_share(picture) <= (islands ? 3e-4 : 1e-4));
+    CHECK(pinhole_share(picture) <= (islands ? 6e-4 : 1e-4));
     CHECK(mean(picture, "A") > 0.05); // the camera looks at it
     // A grey object of albedo 0.75 under the default lights reads about 0.5, coloured scans a quarter of that; seen
     // from its back it would read 0.
@@ -128,7 +128,7 @@ TEST_CASE("scans: the right side lit, no pinholes") {
   }
 }
 
-TEST_CASE("scans: coverage equals the triangle mesh's within 2 %") {
+TEST_CASE("scans: coverage equals the triangle mesh's within 1 %") {
   for (const char* name : {"bunny.ply", "dragon.ply"}) {
     const auto path = scan_path(name);
     if (!path) {
@@ -141,7 +141,8 @@ TEST_CASE("scans: coverage equals the triangle mesh's within 2 %") {
     const Picture picture = render_scan(*path, false).picture;
     const double truth = mesh_coverage(mesh, picture);
     CHECK(truth > 0.05);
-    CHECK(mean(picture, "A") == Approx(truth).epsilon(0.02));
+    CHECK(mean(picture, "A") == Approx(truth).epsilon(0.01));
+    CHECK(pinhole_share(picture) <= 1e-4);
     WARN(name << ": coverage of the splats over the mesh's " << mean(picture, "A") / truth << ", pinholes "
               << pinhole_share(picture));
   }

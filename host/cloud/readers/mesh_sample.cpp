@@ -1,4 +1,5 @@
 #include "host/cloud/readers/mesh_sample.h"
+#include "host/cloud/mesh_borders.h"
 #include "host/run.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,6 +19,9 @@ constexpr int tries_per_point = 16;
 /// Closest distance allowed, in units of the mean spacing sqrt(area / wanted); chosen by measurement such that the
 /// wanted number results to 10 % (0.90 to 1.06 of it on a square and a cube).
 constexpr double closest_in_spacings = 0.78;
+
+/// How far off a border is looked for, in mean spacings: no disc is larger.
+constexpr double border_reach = 2.0;
 
 Vector3d area_vector(const MeshTriangle& t) {
   return 0.5 * (t.position[1] - t.position[0]).cross(t.position[2] - t.position[0]);
@@ -165,6 +169,16 @@ PointCloud sample_triangles(const std::vector<MeshTriangle>& triangles, double w
       for (const Vector3d& p : t.position)
         origin = origin.cwiseMin(p);
 
+  std::vector<Vector3d> corners;
+  MeshBorders::Triangles faces;
+  for (const MeshTriangle& t : triangles) {
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    faces.push_back({first, first + 1, first + 2});
+    corners.insert(corners.end(), t.position.begin(), t.position.end());
+  }
+  const MeshBorders borders(corners, faces);
+  const double reach = border_reach * std::sqrt(area / wanted);
+
   PointCloud cloud;
   Occupied occupied(closest_in_spacings * std::sqrt(area / wanted), origin, static_cast<std::size_t>(wanted));
   const auto tries = static_cast<std::uint64_t>(std::ceil(wanted)) * tries_per_point;
@@ -176,6 +190,10 @@ PointCloud sample_triangles(const std::vector<MeshTriangle>& triangles, double w
     cloud.position.push_back(c.position);
     cloud.normal.push_back(normal_at(t, c));
     if (with_colour) cloud.colour.push_back(interpolate(t.colour, c.weight));
+    if (!borders.any()) continue;
+    const ClipStrips clip =
+        borders.around(c.position, cloud.normal.back().cast<double>(), {static_cast<std::uint32_t>(c.triangle)}, reach);
+    if (!clip.strip[0].axis.isZero(0)) cloud.clipped.push_back({static_cast<std::uint32_t>(cloud.size() - 1), clip});
   }
   cloud.area.assign(cloud.size(), static_cast<float>(area / static_cast<double>(cloud.size())));
   return cloud;

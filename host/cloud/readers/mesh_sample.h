@@ -15,7 +15,8 @@ struct MeshTriangle {
 };
 
 /// About `wanted` points (1 ... 1e8) on the triangles, no two on one side of a sheet closer than 0.78 of the mean
-/// spacing sqrt(area / wanted). Fills position, normal, area, and colour if `with_colour`. Deterministic. Requires a
+/// spacing sqrt(area / wanted). Fills position, normal, area, clipped (where faces
+/// end within two spacings), and colour if `with_colour`. Deterministic. Requires a
 /// finite total area > 0; triangles whose own area is not finite and > 0 get no points.
 PointCloud sample_triangles(const std::vector<MeshTriangle>& triangles, double wanted, bool with_colour);
 

@@ -19,6 +19,7 @@ PointCloud numbered(std::uint32_t count) {
     cloud.structure.push_back(i % 2 == 0 ? Structure::surface : Structure::line);
     cloud.station.push_back(static_cast<std::uint16_t>(i));
     cloud.fields[0].values.push_back(i);
+    if (i % 2 == 1) cloud.clipped.push_back({i, {{{{{1, 0, 0}, -1.0, value}, {}}}}});
   }
   return cloud;
 }
@@ -34,6 +35,11 @@ TEST_CASE("points that are kept keep all their attributes, their order and their
   const std::vector<std::uint32_t> left{1, 7};
   CHECK(cloud.record == left);
   REQUIRE(cloud.size() == 2);
+  REQUIRE(cloud.clipped.size() == 2);
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    CHECK(cloud.clipped[k].point == k);
+    CHECK(cloud.clipped[k].clip.strip[0].high == left[k]);
+  }
   for (std::size_t k = 0; k < left.size(); ++k) {
     const std::uint32_t i = left[k];
     const auto value = static_cast<float>(i);

@@ -57,6 +57,12 @@ TEST_CASE("a cell polygon is cut as half-planes say", "[cloud][splat_size]") {
   CHECK_FALSE(polygon.open());
   CHECK(polygon.area() == Approx(2 * 4)); // exact up to rounding, as all here
   CHECK(polygon.reach2() == Approx(1 + 4));
+  CHECK(polygon.reach_along({1, 0}) == Approx(1));
+  CHECK(polygon.reach_along({0, -1}) == Approx(2));
+  CellPolygon half = polygon;
+  half.cut_at({1, 0}, 0.0); // through its middle
+  CHECK(half.area() == Approx(2 * 2));
+  CHECK(half.reach_along({1, 0}) == Approx(0).margin(1e-12));
   polygon.cut({0, 40}); // too far to touch it
   CHECK(polygon.area() == Approx(8));
   polygon.cut({2, 4}); // cuts off a corner: x + 2y <= 5, which the corner (1, 2) just meets

@@ -36,3 +36,19 @@ TEST_CASE("a hundred thousand splats in one place are one, and none of a sphere'
   CHECK(merge_coincident(sphere, id).empty());
   CHECK(sphere.size() == before.size());
 }
+
+TEST_CASE("points that end at borders are not merged, unless there are many in one place") {
+  const auto pile = [](std::size_t count) {
+    return std::vector<Splat>(count, make_splat(0.5f, 0.5f, 0.5f, 0, 0, 1, 0.1f));
+  };
+  const auto left = [&](std::size_t count, const std::vector<bool>& alone) {
+    std::vector<Splat> splats = pile(count);
+    std::vector<std::uint32_t> id(count);
+    std::iota(id.begin(), id.end(), 0u);
+    merge_coincident(splats, id, nullptr, alone);
+    return splats.size();
+  };
+  CHECK(left(4, {}) == 1);
+  CHECK(left(4, {true, true, false, false}) == 3);
+  CHECK(left(100'000, std::vector<bool>(100'000, true)) == 16);
+}

@@ -1,0 +1,27 @@
+#pragma once
+/// Where discs of scans and meshes end before their rims do: at edges, and where they would stick out of a bent
+/// surface.
+#include "host/cloud/point_cloud.h"
+#include "host/cloud/site_spacing.h"
+#include <optional>
+
+namespace pointgi {
+
+/// What is known of a cloud whose discs are to end.
+struct BorderEvidence {
+  std::vector<ClippedPoint> rims; ///< boundaries of open surfaces (SplatSizes); of a mesh, its edges and boundaries
+  bool from_faces = false;        ///< rims are a mesh's own: exact, and all that there are
+  bool normals_given = false;     ///< and are not to be doubted
+  std::optional<Eigen::Vector3d> sensor; ///< of a scan from one place: surfaces face it
+};
+
+/// Fills cloud.clipped for points of surfaces. A disc ends
+///   - at its rims;
+///   - of a scan, at an edge that sticks out, where the two faces' planes meet: the other's plane is a mean over its
+///     points;
+///   - of a surface bent outwards, at the bounds of its cell, where it would stick out of its neighbours' planes.
+/// Discs beside an edge grow where they must, to reach it; their areas become those of their cells on their own face.
+/// Requires normals with their final sides, radii and areas. `spacing`: of the sites, local units.
+void clip_discs(PointCloud& cloud, const Sites& sites, const std::vector<float>& spacing, BorderEvidence&& evidence);
+
+} // namespace pointgi
