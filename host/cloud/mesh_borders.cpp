@@ -16,7 +16,7 @@ namespace {
 constexpr double smooth_cosine = 0.766;     // 40°: between the faces of a coarse round surface and an edge
 constexpr double odd_cosine = -0.5;         // 120°: of faces that fold back, as few things do
 constexpr double most_odd = 0.01;           // of a mesh's edges
-constexpr double exactly_back = -0.998;     // a face and its back
+constexpr double mostly_doubled = 0.5;      // of them
 constexpr double folded_back = -0.9;        // cosine: the two sides of a sheet
 constexpr double across_cosine = 0.9;       // of two borders' axes; nearer to parallel and they are one
 constexpr double inward = 0.1;              // sine of the turn at a corner from which it counts as one
@@ -129,13 +129,15 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
   }
   std::sort(sides.begin(), sides.end(), before);
   std::vector<Fold> folds;
-  std::size_t odd = 0;
+  std::size_t odd = 0;                                 // sides that fold back, or of three
+  std::size_t doubled = 0;                             // sides of four, as where faces are stored both ways round
   std::vector<std::uint32_t> ends(position.size(), 0); // of edges where the surface ends or is folded, at each vertex
   for (std::size_t i = 0, past = 0; i < sides.size(); i = past) {
     for (past = i + 1; past < sides.size() && sides[past].low == sides[i].low && sides[past].high == sides[i].high;)
       ++past;
     bool is_end = false;
     odd += past - i == 3 ? 3 : 0;
+    doubled += past - i == 4 ? 4 : 0;
     for (std::size_t a = i; a < past; ++a) {
       // Of several the flattest, and of a face and its back the one that is wound alike.
       double best = -1.0;
@@ -151,7 +153,7 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
         across_[sides[a].slot] = next;
       } else {
         is_end = true;
-        odd += next != none && best < odd_cosine && best > exactly_back;
+        odd += next != none && best < odd_cosine;
         if (best > folded_back) folds.push_back({sides[a], next});
       }
     }
@@ -160,9 +162,9 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
       ++ends[sides[i].high];
     }
   }
-  if (static_cast<double>(odd) >
-      most_odd * static_cast<double>(
-                     sides.size())) { // flaps and faces that pass through each other: nothing tells what ends there
+  // Flaps, and faces that pass through each other: nothing tells what ends there.
+  const auto all = static_cast<double>(sides.size());
+  if (static_cast<double>(odd) > most_odd * all && static_cast<double>(doubled) < mostly_doubled * all) {
     std::fill(across_.begin(), across_.end(), none);
     return;
   }

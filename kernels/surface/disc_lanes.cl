@@ -68,16 +68,18 @@ static inline lanes_i unclipped_lanes(const __global float* blocks, const __glob
   float t_of[WIDE_LANES];
   store_lanes(met, met_of);
   store_lanes(t, t_of);
-  const __global float* clip = blocks + as_uint(block[WIDE_CLIPS(WIDE_LANES)]);
-  for (uint left = clipped; left != 0u; left &= left - 1u, clip += CLIP_WORDS) {
-    const uint lane = popcount((left & (0u - left)) - 1u);
-    if (met_of[lane] == 0)
-      continue;
-    const float3 centre = (float3)(block[WIDE_CENTRE(WIDE_LANES, 0) + lane], block[WIDE_CENTRE(WIDE_LANES, 1) + lane],
-                                   block[WIDE_CENTRE(WIDE_LANES, 2) + lane]);
-    if (is_clipped_off(clip, fma((float3)(t_of[lane]), direction, origin - centre)))
-      met_of[lane] = 0;
-  }
+  const __global float* clips = blocks + as_uint(block[WIDE_CLIPS(WIDE_LANES)]);
+  for (int part = 0; part < WIDE_LANES / 8; ++part)
+    for (ulong left = byte_a_lane(vload8(part, met_of)); left != 0ul; left &= left - 1ul) {
+      const uint lane = 8u * part + lowest_byte(left), bit = 1u << lane;
+      if ((clipped & bit) == 0u)
+        continue;
+      const float3 centre = (float3)(block[WIDE_CENTRE(WIDE_LANES, 0) + lane], block[WIDE_CENTRE(WIDE_LANES, 1) + lane],
+                                     block[WIDE_CENTRE(WIDE_LANES, 2) + lane]);
+      if (is_clipped_off(clips + CLIP_WORDS * popcount(clipped & (bit - 1u)),
+                         fma((float3)(t_of[lane]), direction, origin - centre)))
+        met_of[lane] = 0;
+    }
   return load_lanes(met_of);
 }
 #define UNCLIPPED_LANES(block, ray, h, met) unclipped_lanes(block_pool, block, (ray).origin, (ray).direction, (h).t, met)

@@ -20,6 +20,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <spdlog/spdlog.h>
 
 namespace {
@@ -151,14 +152,49 @@ std::array<Pairs, 2> measure_incoherent(Tracer& tracer, const EmbreePeer& peer, 
   return result;
 }
 
+/// What borders cost: the same rays against discs that end and against whole ones, eye rays and bounced ones.
+nlohmann::json measure_borders(Tracer& ending, Tracer& whole, const std::vector<RayQuery>& coherent,
+                               const std::vector<RayQuery>& bounced, int pairs) {
+  const std::vector<RayPacketQuery> as_packets = packets_of(coherent);
+  const auto packets = ending.session.upload(as_packets);
+  const auto packet_answers = ending.session.allocate<RayPacketAnswer>(as_packets.size());
+  const auto rays = ending.session.upload(coherent), others = ending.session.upload(bounced);
+  const auto answers = ending.session.allocate<RayAnswer>(std::max(coherent.size(), bounced.size()));
+  const auto trace = [&](Tracer& tracer, bool eye) {
+    if (!eye)
+      tracer.closest(others, answers);
+    else if (tracer.variant.grouping == RayGrouping::packet)
+      tracer.packets(packets, packet_answers);
+    else
+      tracer.closest(rays, answers);
+  };
+  nlohmann::json row;
+  for (const bool eye : {true, false}) {
+    trace(ending, eye); // warm
+    trace(whole, eye);
+    std::vector<double> ratios;
+    for (int k = 0; k < pairs; ++k) {
+      const double with = warm_seconds_of([&] { trace(ending, eye); });
+      ratios.push_back(with / warm_seconds_of([&] { trace(whole, eye); }));
+    }
+    std::printf("  borders    %s rays take %.3f of the time that whole discs take\n", eye ? "eye" : "bounced",
+                median(ratios));
+    row[eye ? "coherent" : "incoherent"] = median(ratios);
+  }
+  return row;
+}
+
 nlohmann::json measure(Session& session, const std::string& name, const WorldSplats& world, Scene scene, int pairs) {
   scene.render.width = scene.render.height = image;
   if (!scene.camera.chosen) choose_camera(scene, world);
   const Frame frame = frame_of(world.cloud);
   const std::vector<Splat> splats = place_in_cube(world, frame);
+  std::vector<std::uint32_t> id(splats.size());
+  std::iota(id.begin(), id.end(), 0u);
+  const SplatClips clips = clips_in_cube(world, frame, splats, id);
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, session.info()).variant;
   const Pairs build = measure_build(splats, variant, pairs);
-  const OctreePools pools = build_pools(splats, variant);
+  const OctreePools pools = build_pools(splats, variant); // Embree has no borders: both trace whole discs
   Tracer tracer{session, upload_pools(session, pools, variant.storage), variant};
   const EmbreePeer peer(splats);
   const std::vector<RayQuery> coherent = eye_rays(device_camera(scene, frame), {0, image, 0, image}),
@@ -178,6 +214,15 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
   row["coherent"] = report_rays("coherent", coherent_pairs, coherent.size());
   row["incoherent"] = report_rays("incoherent", closest, bounced.size());
   row["any-hit"] = report_rays("any-hit", any, bounced.size());
+  if (!clips.empty()) {
+    TraversalVariant clipped = variant;
+    clipped.clips = true;
+    Tracer ending{session, upload_pools(session, build_pools(splats, clipped, clips), variant.storage), clipped};
+    std::printf("  borders    %.0f %% of the splats end at one\n",
+                100.0 * static_cast<double>(clips.size()) / static_cast<double>(splats.size()));
+    row["borders"] = measure_borders(ending, tracer, coherent, bounced, pairs);
+    row["borders"]["share"] = static_cast<double>(clips.size()) / static_cast<double>(splats.size());
+  }
   const double share = 1.0 / build.ratio();
   row["build"] = {{"seconds", median(build.ours)}, {"embree_seconds", median(build.theirs)}, {"ratio", share}};
   std::printf("  %-10s %7.3f s         Embree %7.3f   ratio %.2f\n", "build", median(build.ours), median(build.theirs),
