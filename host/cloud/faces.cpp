@@ -10,13 +10,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double thick = 0.5;       // spacings: of a face, noise of a fifth of one at 2.5 standard deviations
-constexpr double like_face = 0.9;   // cosine, 25°: of neighbours' normals on one face with each other
-constexpr double apart = 0.766;     // 40°: between faces
+constexpr double thick = 0.5;        // spacings: of a face, noise of a fifth of one at 2.5 standard deviations
+constexpr double like_face = 0.9;    // cosine, 25°: of neighbours' normals on one face with each other
+constexpr double apart = 0.766;      // 40°: between faces
 constexpr double least_corner = 0.2; // triple product of the normals at a corner
-constexpr unsigned fewest = 8;      // neighbours on a face
-constexpr double nearly_all = 0.85; // of neighbours: on one of the faces
-constexpr double beside = 1.5;      // spacings from an edge: where a round surface differs most from it
+constexpr unsigned fewest = 8;       // neighbours on a face
+constexpr double nearly_all = 0.85;  // of neighbours: on one of the faces
+constexpr double beside = 1.5;       // spacings from an edge: where a round surface differs most from it
 // Spacings: a bend, and a mean depth beside the edge, that no face has. A radius of seven spacings bends 0.3.
 constexpr double least_bend = 0.1, least_depth = 0.05, largest = 0.2;
 constexpr double surely = 4.0;      // standard deviations of a mean that noise explains

@@ -13,14 +13,17 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double smooth_cosine = 0.766;     // 40°: between the faces of a coarse round surface and an edge
-constexpr double odd_cosine = -0.5;         // 120°: of faces that fold back, as few things do
-constexpr double most_odd = 0.01;           // of a mesh's edges
-constexpr double mostly_doubled = 0.5;      // of them
-constexpr double folded_back = -0.9;        // cosine: the two sides of a sheet
-constexpr double across_cosine = 0.9;       // of two borders' axes; nearer to parallel and they are one
-constexpr double inward = 0.1;              // sine of the turn at a corner from which it counts as one
-constexpr std::size_t most_triangles = 256; // looked at around a place
+constexpr double smooth_cosine = 0.766;      // 40°: between the faces of a coarse round surface and an edge
+constexpr double odd_cosine = -0.5;          // 120°: of faces that fold back, as few things do
+constexpr double most_odd = 0.01;            // of a mesh's edges
+constexpr double mostly_doubled = 0.5;       // of them
+constexpr double folded_back = -0.9;         // cosine: the two sides of a sheet
+constexpr double across_cosine = 0.9;        // of two borders' axes; nearer to parallel and they are one
+constexpr double inward = 0.1;               // sine of the turn at a corner from which it counts as one
+constexpr std::size_t most_triangles = 256;  // looked at around a place
+constexpr int most_rounds = 100;             // edges that a fold is shortened by
+constexpr std::size_t most_at_edge = 16;     // triangles; more, and the edge counts as an end
+constexpr std::uint32_t most_at_vertex = 64; // triangles of one that is split
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 bool before(const MeshSide& a, const MeshSide& b) {
@@ -138,6 +141,10 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
     bool is_end = false;
     odd += past - i == 3 ? 3 : 0;
     doubled += past - i == 4 ? 4 : 0;
+    if (past - i > most_at_edge) {
+      odd += past - i;
+      continue;
+    }
     for (std::size_t a = i; a < past; ++a) {
       // Of several the flattest, and of a face and its back the one that is wound alike.
       double best = -1.0;
@@ -175,7 +182,8 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
 /// Edges go on or meet others. A fold that stops in the middle of a surface is one of a coarse or noisy mesh.
 void MeshBorders::unfold_loose(std::vector<Fold>& folds, std::vector<std::uint32_t>& ends) {
   const auto is_loose = [&](const Fold& fold) { return ends[fold.side.low] < 2 || ends[fold.side.high] < 2; };
-  for (bool any = true; any;) {
+  bool any = true;
+  for (int round = 0; any && round < most_rounds; ++round) {
     any = false;
     for (std::size_t i = 0, past = 0; i < folds.size(); i = past) {
       for (past = i + 1; past < folds.size() && folds[past].side.low == folds[i].side.low &&
@@ -199,6 +207,7 @@ bool MeshBorders::faces_along(std::size_t triangle, const Vector3d& normal) cons
 
 ClipStrips MeshBorders::around(const Vector3d& place, const Vector3d& normal, const std::vector<std::uint32_t>& from,
                                double reach) const {
+  if (from.size() > most_triangles) return {};
   std::vector<std::uint32_t> seen = from;
   std::vector<Border> borders;
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -283,6 +292,7 @@ void split_at_edges(PointCloud& cloud) {
   const auto points = static_cast<std::uint32_t>(cloud.size());
   std::vector<std::uint32_t> left, group;
   for (std::uint32_t p = 0; p < points; ++p) {
+    if (incident.first[p + 1] - incident.first[p] > most_at_vertex) continue; // the tip of a fan
     left.assign(incident.of.begin() + incident.first[p], incident.of.begin() + incident.first[p + 1]);
     for (bool first = true; !left.empty(); first = false) {
       group = {left.back()};

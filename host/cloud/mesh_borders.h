@@ -54,8 +54,8 @@ private:
   bool any_ = false;
 };
 
-/// Vertices at which edges meet become several points, one for each face: their normals stay those of the faces.
-/// Triangles refer to the new points afterwards, which follow the others.
+/// Vertices at which edges meet become several points, one for each face: their normals stay those of the faces. Those
+/// of more than 64 triangles stay one. Triangles refer to the new points afterwards, which follow the others.
 void split_at_edges(PointCloud& cloud);
 
 /// Fills cloud.clipped of the vertices of a mesh, from its faces. `reach`: a value a point, world units, such as radii.

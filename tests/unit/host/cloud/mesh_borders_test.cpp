@@ -1,6 +1,6 @@
 #include "host/cloud/complete.h"
-#include <Eigen/Geometry>
 #include "host/cloud/mesh_borders.h"
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
@@ -196,4 +196,27 @@ TEST_CASE("a border round a lip is another side's", "[cloud][mesh_borders]") {
   const ClipStrips clip = borders.around(lip.position[top], {0, -1, 0}, from, 0.2);
   for (const ClipStrips::Strip& strip : clip.strip)
     CHECK(strip.axis.z() > -0.5); // nothing ends downwards, where the front goes on
+}
+
+TEST_CASE("meshes with everything at one vertex or on one edge are read in time", "[cloud][mesh_borders]") {
+  // Looking at each pair of so many would take minutes; a stuck test is a failed one.
+  constexpr int many = 200'000;
+  const auto fan = [](bool on_one_edge) {
+    PointCloud mesh;
+    mesh.position = {{0, 0, 0}, {0, 0, 1}};
+    for (int i = 0; i < many; ++i) {
+      const double angle = 6.283185307 * i / many;
+      mesh.position.emplace_back(std::cos(angle), std::sin(angle), i % 2);
+    }
+    for (std::uint32_t i = 0; i + 1 < many; ++i)
+      mesh.triangle.push_back({0, on_one_edge ? 1 : i + 3, i + 2});
+    return mesh;
+  };
+  for (const bool on_one_edge : {false, true}) {
+    PointCloud mesh = fan(on_one_edge);
+    split_at_edges(mesh);
+    CHECK(mesh.size() >= many + 2u);
+    mesh.normal.assign(mesh.size(), Eigen::Vector3f::UnitZ());
+    borders_from_faces(mesh, std::vector<float>(mesh.size(), 0.1f));
+  }
 }
