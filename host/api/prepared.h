@@ -28,7 +28,8 @@ public:
   std::size_t size() const;
   /// [size x 3], world units, within 1e-7 of the scene's size; in the octree's order.
   std::vector<double> positions() const;
-  /// [size]: the place of each among the kept points of all clouds, then shapes, in the scene's order.
+  /// [size]: the place of each among the kept points of all clouds, then shapes, in the scene's order. A mesh's vertex
+  /// at a sharp edge is a point for each face: what was added follows its cloud's vertices.
   std::vector<unsigned> ids() const;
 
   /// The scene's, or the one that was chosen because the scene has none.

@@ -95,11 +95,14 @@ void complete_body(PointCloud& cloud, const Sites& sites, std::vector<float>&& d
   }
   if (own_radii) return;
   const bool from_faces = sampled || !cloud.triangle.empty();
-  if (!cloud.triangle.empty()) borders_from_faces(cloud, cloud.radius);
-  BorderEvidence evidence{
-      from_faces ? std::exchange(cloud.clipped, {}) : std::move(sizes.rims), from_faces, signs_given, {}};
+  if (!cloud.triangle.empty()) borders_from_faces(cloud);
+  BorderEvidence evidence;
+  evidence.rims = from_faces ? std::exchange(cloud.clipped, {}) : std::move(sizes.rims);
+  evidence.from_faces = from_faces;
+  evidence.normals_given = signs_given;
+  evidence.areas_given = sampled;
   if (report.stations.size() == 1 && options.normals != NormalSource::flip) evidence.sensor = report.stations[0];
-  clip_discs(cloud, sites, spacing.spacing, std::move(evidence));
+  clip_discs(cloud, sites, spacing, std::move(evidence));
 }
 
 /// The cloud's strays, a value a point; empty: none, or not looked for.
@@ -135,11 +138,16 @@ void complete_around_strays(PointCloud& cloud, const std::vector<char>& strays, 
   body.area = without(cloud.area, strays);
   body.station = without(cloud.station, strays);
   body.stations = cloud.stations;
+  std::vector<std::uint32_t> number, place(cloud.size()); // of each point of the body in the cloud, and back
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (!strays[i]) {
+      place[i] = static_cast<std::uint32_t>(number.size());
+      number.push_back(i);
+    }
+  for (const ClippedPoint& c : std::exchange(cloud.clipped, {}))
+    if (!strays[c.point]) body.clipped.push_back({place[c.point], c.clip});
   Sites sites(body.position);
   complete_body(body, sites, keep_neighbours_and_spacings(sites, kept_neighbours), options, report);
-  std::vector<std::uint32_t> number; // of each point of the body in the cloud
-  for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (!strays[i]) number.push_back(i);
   for (const ClippedPoint& c : body.clipped)
     cloud.clipped.push_back({number[c.point], c.clip});
   cloud.normal.resize(cloud.size());

@@ -24,10 +24,11 @@ struct CompleteOptions {
 };
 
 /// Drops points that are not finite or have radius <= 0 in the file, and strays (host/cloud/strays.h) as options.strays
-/// says, then fills normal, radius, area and structure; normals that are given are kept, missing ones (zero, NaN)
-/// estimated. Afterwards all four arrays are as long as `position`, normals are unit, radii and areas > 0. `report`
-/// receives, too, the kind of cloud and which way is up where the kind or the format shows it. Throws Error(input) when
-/// no point is left. Ends in seconds for any input (coincident, collinear, one far outlier).
+/// says, then fills normal, radius, area, structure and clipped; normals that are given are kept, missing ones (zero,
+/// NaN) estimated. Vertices of a mesh without normals become several points where sharp edges meet: copies follow the
+/// others, `record` tells of which. Afterwards all four arrays are as long as `position`, normals are unit, radii and
+/// areas > 0. `report` receives, too, the kind of cloud and which way is up where the kind or the format shows it.
+/// Throws Error(input) when no point is left. Ends in seconds for any input (coincident, collinear, one far outlier).
 void complete_cloud(PointCloud& cloud, const CompleteOptions& options, CloudReport& report);
 
 } // namespace pointgi

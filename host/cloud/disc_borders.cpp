@@ -17,19 +17,23 @@ namespace {
 
 constexpr unsigned border_neighbours = 20; // as many as Sites keep
 constexpr unsigned planes_a_site = 8;
-constexpr double edge_cosine = 0.866;  // 30°: across an edge, as in unfold()
-constexpr double face_cosine = 0.9;    // 25°: of neighbours' normals, beyond which edges are looked for
-constexpr double across_cosine = 0.9;  // of the axes of two borders; nearer to parallel and they are one
-constexpr double beside_cosine = 0.7;  // of a border's axis with a direction that it bounds
-constexpr double visible = 0.12;       // of the radius: what may stick out unclipped
-constexpr double most_growth = 2.5;    // of a disc beside an edge; more, and the surroundings are not what they seem
-constexpr double smooth_margin = 1.05; // of the cell's reach: neighbours' planes need not meet where cells do
-constexpr double tower = 1.05;         // radius over the spacing that is unusual
+constexpr double edge_cosine = 0.866;   // 30°: across an edge, as in unfold()
+constexpr double face_cosine = 0.9;     // 25°: of neighbours' normals, beyond which edges are looked for
+constexpr double across_cosine = 0.9;   // of the axes of two borders; nearer to parallel and they are one
+constexpr double beside_cosine = 0.7;   // of a border's axis with a direction that it bounds
+constexpr double visible = 0.12;        // of the radius: what may stick out unclipped
+constexpr float level_cosine = 0.9928f; // less than `visible` for a sine
+constexpr double mesh_growth = 1.5;     // of a mesh's: borders are known that far off
+constexpr double most_growth = 2.5;     // of a disc beside an edge; more, and the surroundings are not what they seem
+constexpr double least_area = 1e-3;     // of a disc, over the square of its radius
+constexpr double smooth_margin = 1.05;  // of the cell's reach: neighbours' planes need not meet where cells do
+constexpr double tower = 1.05;          // radius over the spacing that is unusual
 constexpr double pi = 3.14159265358979323846;
 constexpr double ragged_gap = 90.0 / 180.0 * pi, straight_gap = 1.1 * pi; // between neighbours at a boundary
 constexpr unsigned far_neighbours = 160; // in which one would lie beyond the gap, were it a hole
 constexpr double in_gap = 0.8;           // cosine, 37°
 constexpr unsigned beside_rim = 10;      // neighbours that a boundary is taken over from
+constexpr std::size_t most_at_site = 16;
 constexpr std::uint32_t no_rim = std::numeric_limits<std::uint32_t>::max();
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
@@ -56,13 +60,18 @@ void add(ClipStrips& clip, const Vector3d& axis, double limit) {
   }
 }
 
+float positive_float(double value) {
+  return std::max(static_cast<float>(value), std::numeric_limits<float>::min());
+}
+
 /// Finds how the discs of a range of sites end. In local units.
 class BorderFinder {
 public:
   /// `rim_number`: index into the evidence's rims of each point, or no_rim; empty where there are none.
-  BorderFinder(const PointCloud& cloud, const Sites& sites, const std::vector<float>& spacing,
-               const BorderEvidence& evidence, const std::vector<std::uint32_t>& rim_number)
-      : cloud_(cloud), sites_(sites), spacing_(spacing), evidence_(evidence), rim_number_(rim_number) {}
+  BorderFinder(const PointCloud& cloud, const Sites& sites, const SiteSpacing& spacing, const BorderEvidence& evidence,
+               const std::vector<std::uint32_t>& rim_number)
+      : cloud_(cloud), sites_(sites), spacing_(spacing.spacing), site_normals_(spacing.normal), evidence_(evidence),
+        rim_number_(rim_number) {}
 
   struct Ends {
     ClipStrips clip;
@@ -75,20 +84,44 @@ public:
     count_ = sites_.nearest(site, std::min(border_neighbours, sites_.size() - 1), near_.data());
   }
 
+  /// Whether nothing can stick out here: neighbours face alike, and the disc is of the usual size. Most sites are so.
+  bool is_level() const {
+    const std::uint32_t point = *sites_.points(site_).begin();
+    if (evidence_.from_faces || sites_.points(site_).size() > 1 || rim_of(point) != nullptr ||
+        cloud_.radius[point] / sites_.unit() >= tower * spacing_[site_])
+      return false;
+    const Eigen::Vector3f& n = site_normals_[site_];
+    return std::all_of(near_.begin(), near_.begin() + count_,
+                       [&](const Neighbour& near) { return n.dot(site_normals_[near.site]) > level_cosine; });
+  }
+
   Ends find(std::uint32_t point) {
     const double radius = cloud_.radius[point] / sites_.unit();
     const Vector3d n = cloud_.normal[point].cast<double>();
     const TangentFrame frame(n);
     const ClipStrips rim = rim_at(point, frame, radius);
     if (is_beside_edge(n) && find_faces_around(n)) {
-      const Ends ends = ends_on_face(radius, rim);
-      if (ends.radius > 0) return ends;
+      Ends ends = ends_on_face(radius, rim);
+      if (ends.radius > 0) return with_share(ends, point);
     }
     look_around(n, radius);
-    return ends_on_surface(frame, radius, rim);
+    return with_share(ends_on_surface(frame, radius, rim), point);
   }
 
 private:
+  /// Points at one site that face alike share their cell. A sliver between two borders keeps some area.
+  Ends with_share(Ends ends, std::uint32_t point) const {
+    if (!(ends.radius > 0)) return ends;
+    const Sites::Points points = sites_.points(site_);
+    const auto sharing = std::count_if(points.begin(), points.end(), [&](std::uint32_t other) {
+      return cloud_.normal[other].dot(cloud_.normal[point]) > static_cast<float>(face_cosine);
+    });
+    const double least = least_area * ends.radius * ends.radius;
+    ends.area = evidence_.areas_given
+                    ? 0.0
+                    : std::max(ends.area, least) / static_cast<double>(std::max<std::ptrdiff_t>(sharing, 1));
+    return ends;
+  }
   Vector3d offset(unsigned j) const { return sites_.position(near_[j].site) - sites_.position(site_); }
 
   /// Of the points at a site the normal of the one that faces most alike.
@@ -114,6 +147,11 @@ private:
   /// The boundary where there is nothing beyond a gap between neighbours that bound the point's cell: what lies beyond
   /// a hole is found among so many.
   ClipStrips rim_beyond_gap(const TangentFrame& frame) const {
+    // Quickly no, for most: ways to neighbours all around but for a gap of 90 degrees have a mean of 0.3.
+    Vector3d ways = Vector3d::Zero();
+    for (unsigned j = 0; j < count_; ++j)
+      ways += offset(j).normalized();
+    if (ways.norm() < 0.25 * count_) return {};
     std::array<double, border_neighbours> angle;
     const double usual = spacing_[site_];
     Vector2d flat;
@@ -262,7 +300,7 @@ private:
     lay_cell(frame, rim, cell);
     if (cell.open()) return ends;
     if (fills_face) {
-      ends.radius = std::clamp(splat_overlap * std::sqrt(cell.reach2()), radius, most_growth * radius);
+      ends.radius = std::clamp(splat_overlap * std::sqrt(cell.reach2()), radius, mesh_growth * radius);
       ends.area = cell.area();
       ends.clip = {};
       add_rim(ends, rim, ends.radius);
@@ -328,6 +366,7 @@ private:
   const PointCloud& cloud_;
   const Sites& sites_;
   const std::vector<float>& spacing_;
+  const std::vector<Eigen::Vector3f>& site_normals_; ///< all may have been turned since
   const BorderEvidence& evidence_;
   const std::vector<std::uint32_t>& rim_number_;
   std::uint32_t site_ = 0;
@@ -340,7 +379,7 @@ private:
 
 } // namespace
 
-void clip_discs(PointCloud& cloud, const Sites& sites, const std::vector<float>& spacing, BorderEvidence&& evidence) {
+void clip_discs(PointCloud& cloud, const Sites& sites, const SiteSpacing& spacing, BorderEvidence&& evidence) {
   constexpr std::size_t grain = 2048;
   const double unit = sites.unit();
   const auto scale = [](ClipStrips& clip, double factor) {
@@ -362,7 +401,9 @@ void clip_discs(PointCloud& cloud, const Sites& sites, const std::vector<float>&
   parallel_ranges(sites.size(), grain, [&](std::size_t begin, std::size_t end) {
     BorderFinder finder(cloud, sites, spacing, evidence, rim_number);
     for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
+      if (sites.points(s).size() > most_at_site) continue; // a heap of points is no surface
       finder.go_to(s);
+      if (finder.is_level()) continue;
       for (const std::uint32_t point : sites.points(s)) {
         const Structure structure = cloud.structure[point];
         if (!evidence.from_faces && structure != Structure::surface && structure != Structure::volume) continue;
@@ -376,8 +417,8 @@ void clip_discs(PointCloud& cloud, const Sites& sites, const std::vector<float>&
     for (const auto& [point, ends] : part) {
       if (!ends.normal.isZero(0)) cloud.normal[point] = ends.normal.cast<float>();
       if (ends.radius > 0) {
-        cloud.radius[point] = static_cast<float>(ends.radius * unit);
-        cloud.area[point] = static_cast<float>(ends.area * unit * unit);
+        cloud.radius[point] = positive_float(ends.radius * unit);
+        if (ends.area > 0) cloud.area[point] = positive_float(ends.area * unit * unit);
       }
       if (!is_set(ends.clip.strip[0])) continue;
       cloud.clipped.push_back({point, ends.clip});

@@ -12,6 +12,7 @@ struct BorderEvidence {
   std::vector<ClippedPoint> rims; ///< boundaries of open surfaces (SplatSizes); of a mesh, its edges and boundaries
   bool from_faces = false;        ///< rims are a mesh's own: exact, and all that there are
   bool normals_given = false;     ///< and are not to be doubted
+  bool areas_given = false;       ///< by a sampler: they stay
   std::optional<Eigen::Vector3d> sensor; ///< of a scan from one place: surfaces face it
 };
 
@@ -21,7 +22,7 @@ struct BorderEvidence {
 ///     points;
 ///   - of a surface bent outwards, at the bounds of its cell, where it would stick out of its neighbours' planes.
 /// Discs beside an edge grow where they must, to reach it; their areas become those of their cells on their own face.
-/// Requires normals with their final sides, radii and areas. `spacing`: of the sites, local units.
-void clip_discs(PointCloud& cloud, const Sites& sites, const std::vector<float>& spacing, BorderEvidence&& evidence);
+/// Requires normals with their final sides, radii and areas. Sites of more than 16 points are left as they are.
+void clip_discs(PointCloud& cloud, const Sites& sites, const SiteSpacing& spacing, BorderEvidence&& evidence);
 
 } // namespace pointgi

@@ -20,7 +20,9 @@ constexpr double mostly_doubled = 0.5;       // of them
 constexpr double folded_back = -0.9;         // cosine: the two sides of a sheet
 constexpr double across_cosine = 0.9;        // of two borders' axes; nearer to parallel and they are one
 constexpr double inward = 0.1;               // sine of the turn at a corner from which it counts as one
+constexpr std::size_t most_borders = 64;     // there
 constexpr std::size_t most_triangles = 256;  // looked at around a place
+constexpr double grown = 1.5;                // of a radius: discs grow up to an edge
 constexpr int most_rounds = 100;             // edges that a fold is shortened by
 constexpr std::size_t most_at_edge = 16;     // triangles; more, and the edge counts as an end
 constexpr std::uint32_t most_at_vertex = 64; // triangles of one that is split
@@ -30,10 +32,19 @@ bool before(const MeshSide& a, const MeshSide& b) {
   return std::tie(a.low, a.high, a.slot) < std::tie(b.low, b.high, b.slot);
 }
 
-/// The same number for corners in one place.
+bool has_area(const std::vector<Vector3d>& position, const std::array<std::uint32_t, 3>& triangle) {
+  for (const std::uint32_t corner : triangle)
+    if (corner >= position.size() || !position[corner].allFinite()) return false;
+  const Vector3d u = position[triangle[1]] - position[triangle[0]], v = position[triangle[2]] - position[triangle[0]];
+  const double longest = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+  return longest > 0 && (u / longest).cross(v / longest).norm() > 1e-12; // as face_normals() asks
+}
+
+/// The same number for corners in one place; none for those of triangles without an area.
 std::vector<std::uint32_t> weld(const std::vector<Vector3d>& position, const MeshBorders::Triangles& triangles) {
-  std::vector<std::uint32_t> order(position.size());
-  std::iota(order.begin(), order.end(), 0u);
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < position.size(); ++i)
+    if (position[i].allFinite()) order.push_back(i);
   const auto key = [&](std::uint32_t i) { return std::tie(position[i].x(), position[i].y(), position[i].z()); };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b) || (key(a) == key(b) && a < b); });
@@ -42,8 +53,9 @@ std::vector<std::uint32_t> weld(const std::vector<Vector3d>& position, const Mes
     place[order[i]] = i > 0 && key(order[i - 1]) == key(order[i]) ? place[order[i - 1]] : order[i];
   std::vector<std::uint32_t> vertex(3 * triangles.size(), MeshBorders::none);
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (triangles[t][k] < position.size()) vertex[3 * t + k] = place[triangles[t][k]];
+    if (has_area(position, triangles[t]))
+      for (std::size_t k = 0; k < 3; ++k)
+        vertex[3 * t + k] = place[triangles[t][k]];
   return vertex;
 }
 
@@ -122,7 +134,7 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
   std::vector<Vector3d> into(3 * triangles.size(), Vector3d::Zero());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const std::uint32_t* v = &vertex_[3 * t];
-    if (v[0] == none || v[1] == none || v[2] == none || v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    if (!is_used(t)) continue;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const auto slot = static_cast<std::uint32_t>(3 * t + k);
       const std::uint32_t a = v[k], b = v[(k + 1) % 3];
@@ -141,11 +153,12 @@ MeshBorders::MeshBorders(const std::vector<Vector3d>& position, const Triangles&
     bool is_end = false;
     odd += past - i == 3 ? 3 : 0;
     doubled += past - i == 4 ? 4 : 0;
-    if (past - i > most_at_edge) {
+    const bool crowded = past - i > most_at_edge;
+    if (crowded) {
       odd += past - i;
-      continue;
+      is_end = true;
     }
-    for (std::size_t a = i; a < past; ++a) {
+    for (std::size_t a = i; a < past && !crowded; ++a) {
       // Of several the flattest, and of a face and its back the one that is wound alike.
       double best = -1.0;
       std::uint32_t next = none;
@@ -207,21 +220,20 @@ bool MeshBorders::faces_along(std::size_t triangle, const Vector3d& normal) cons
 
 ClipStrips MeshBorders::around(const Vector3d& place, const Vector3d& normal, const std::vector<std::uint32_t>& from,
                                double reach) const {
-  if (from.size() > most_triangles) return {};
   std::vector<std::uint32_t> seen = from;
   std::vector<Border> borders;
   for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen.size() > most_triangles || borders.size() > most_borders) return {};
     const std::size_t t = seen[i];
+    if (!is_used(t)) continue;
     if (i >= from.size() && !faces_along(t, normal)) continue; // round a lip: its border is another one's
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = vertex_[3 * t + k], b = vertex_[3 * t + (k + 1) % 3], c = vertex_[3 * t + (k + 2) % 3];
-      if (a == none || b == none || c == none || a == b || b == c || c == a) continue;
       const Vector3d begin = position_[a] - place, end = position_[b] - place;
       if (!(distance2_to_segment(begin, end) < reach * reach)) continue;
       const std::uint32_t next = across(t, k);
       if (next != none) {
-        if (seen.size() < most_triangles && std::find(seen.begin(), seen.end(), next) == seen.end())
-          seen.push_back(next);
+        if (std::find(seen.begin(), seen.end(), next) == seen.end()) seen.push_back(next);
         continue;
       }
       Vector3d axis = -into_triangle(position_[a], position_[b], position_[c]);
@@ -293,7 +305,9 @@ void split_at_edges(PointCloud& cloud) {
   std::vector<std::uint32_t> left, group;
   for (std::uint32_t p = 0; p < points; ++p) {
     if (incident.first[p + 1] - incident.first[p] > most_at_vertex) continue; // the tip of a fan
-    left.assign(incident.of.begin() + incident.first[p], incident.of.begin() + incident.first[p + 1]);
+    left.clear();
+    std::copy_if(incident.of.begin() + incident.first[p], incident.of.begin() + incident.first[p + 1],
+                 std::back_inserter(left), [&](std::uint32_t t) { return borders.is_used(t); });
     for (bool first = true; !left.empty(); first = false) {
       group = {left.back()};
       left.pop_back();
@@ -329,7 +343,7 @@ void split_at_edges(PointCloud& cloud) {
     repeat(field.values, sources);
 }
 
-void borders_from_faces(PointCloud& cloud, const std::vector<float>& reach) {
+void borders_from_faces(PointCloud& cloud) {
   const MeshBorders borders(cloud.position, cloud.triangle);
   if (!borders.any()) return;
   const Incident incident(cloud.size(), cloud.triangle);
@@ -339,7 +353,8 @@ void borders_from_faces(PointCloud& cloud, const std::vector<float>& reach) {
     std::vector<std::uint32_t> from;
     for (std::size_t p = begin; p < end; ++p) {
       from.assign(incident.of.begin() + incident.first[p], incident.of.begin() + incident.first[p + 1]);
-      const ClipStrips clip = borders.around(cloud.position[p], cloud.normal[p].cast<double>(), from, reach[p]);
+      const ClipStrips clip =
+          borders.around(cloud.position[p], cloud.normal[p].cast<double>(), from, grown * cloud.radius[p]);
       if (!clip.strip[0].axis.isZero(0)) found[begin / grain].push_back({static_cast<std::uint32_t>(p), clip});
     }
   });

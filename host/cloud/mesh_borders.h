@@ -25,6 +25,9 @@ public:
   /// fold back on others that it is not the surface of anything: then nothing is known of borders.
   bool any() const { return any_; }
 
+  /// Whether the triangle has an area.
+  bool is_used(std::size_t triangle) const { return vertex_[3 * triangle] != none; }
+
   /// The triangle that continues `triangle` within 40° across its edge from `corner` (0 .. 2) to the next; none: it
   /// ends.
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -58,7 +61,8 @@ private:
 /// of more than 64 triangles stay one. Triangles refer to the new points afterwards, which follow the others.
 void split_at_edges(PointCloud& cloud);
 
-/// Fills cloud.clipped of the vertices of a mesh, from its faces. `reach`: a value a point, world units, such as radii.
-void borders_from_faces(PointCloud& cloud, const std::vector<float>& reach);
+/// Fills cloud.clipped of the vertices of a mesh, from its faces, as far off as discs of one and a half times their
+/// radii reach.
+void borders_from_faces(PointCloud& cloud);
 
 } // namespace pointgi

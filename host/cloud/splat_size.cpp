@@ -200,8 +200,13 @@ private:
       return a + 1 < seen ? angle_[a + 1] - angle_[a] : angle_[0] + 2.0 * pi - angle_[a];
     };
     double filled = 2.0 * pi;
+    unsigned wide = 0;
     for (unsigned a = 0; a < seen; ++a)
-      if (gap_after(a) > widest_gap) filled -= gap_after(a);
+      if (gap_after(a) > widest_gap) {
+        filled -= gap_after(a);
+        ++wide;
+      }
+    rim_ = {};
     // The spacing was found as if neighbours were all around; they fill only part of the circle.
     double distance = own;
     if (!isolated && nearest < std::numeric_limits<double>::max())
@@ -209,7 +214,7 @@ private:
     for (unsigned a = 0; a < seen; ++a) {
       const double gap = gap_after(a);
       if (gap <= widest_gap) continue;
-      if (!isolated) set_rim(frame, angle_[a], gap, 0.5 * distance);
+      if (!isolated && wide == 1) set_rim(frame, angle_[a], gap, 0.5 * distance);
       const int ghosts = std::max(1, static_cast<int>(std::ceil(gap / (0.5 * pi) - 0.05)) - 1);
       for (int g = 1; g <= ghosts; ++g) {
         const double angle = angle_[a] + gap * g / (ghosts + 1);

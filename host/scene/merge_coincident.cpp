@@ -23,8 +23,9 @@ bool alike(const Splat& a, const Splat& b) {
   return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] > alike_cosine;
 }
 
-bool opposite(const Splat& a, const Splat& b) {
-  constexpr float opposite_cosine = -0.9f;
+/// `ends`: one of them ends at a border, and is a side of a sheet only where they fit exactly.
+bool opposite(const Splat& a, const Splat& b, bool ends) {
+  const float opposite_cosine = ends ? -0.999f : -0.9f;
   return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] < opposite_cosine;
 }
 
@@ -157,7 +158,9 @@ std::vector<MergedSplat> merge_coincident(std::vector<Splat>& splats, std::vecto
     }
     for (const auto& [first, sum] : sides)
       splats[first] = sum.mean();
-    if (pairs != nullptr && sides.size() == 2 && opposite(splats[sides[0].first], splats[sides[1].first]))
+    if (pairs != nullptr && sides.size() == 2 &&
+        opposite(splats[sides[0].first], splats[sides[1].first],
+                 !alone.empty() && (alone[id[sides[0].first]] || alone[id[sides[1].first]])))
       pairs->push_back({sides[0].first, sides[1].first});
   }
   if (pairs != nullptr) renumber(*pairs, gone);

@@ -75,6 +75,7 @@ void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& po
       cloud.area[i] *= scale * scale;
     }
   });
+  if (settings.radius) cloud.clipped.clear(); // the user's discs are whole
   for (ClippedPoint& clipped : cloud.clipped)
     for (ClipStrips::Strip& strip : clipped.clip.strip) {
       strip.axis = pose.rotation * strip.axis;

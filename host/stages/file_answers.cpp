@@ -29,7 +29,8 @@ std::vector<std::uint32_t> places_by_record(const PreparedScene& scene, bool bac
   if (order.record.empty()) return by_id;
   const std::uint32_t last = *std::max_element(order.record.begin(), order.record.end());
   std::vector<std::uint32_t> by_record(std::size_t{last} + 1, FileAnswers::none);
-  for (std::size_t id = 0; id < order.record.size(); ++id)
+  // Of the points that a vertex at an edge of a mesh became, the first.
+  for (std::size_t id = order.record.size(); id-- > 0;)
     by_record[order.record[id]] = by_id[id];
   return by_record;
 }

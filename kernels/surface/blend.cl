@@ -19,7 +19,7 @@
 #ifndef BLEND_DEPTH
 #define BLEND_DEPTH 1.0f
 #endif
-#define BLEND_COSINE 0.5f /* discs that face another way belong to another surface: a corner stays sharp */
+#define BLEND_COSINE 0.5f /* discs that face another way by 60 degrees are of another surface: a corner stays sharp */
 
 typedef struct Surface {
   float3 position, normal, albedo; /* normal on the splats' front side, unit */

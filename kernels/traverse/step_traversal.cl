@@ -186,7 +186,13 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
  * counts in the one cell that holds its hit, so it counts once. */
 static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   Walk walk;
-  walk_start(POOL_ARGS, &walk, ray, BLEND_BEGIN(blend));
+  float t_begin = BLEND_BEGIN(blend);
+#ifdef HAS_CLIPS
+  float t_enter, t_leave; /* what was clipped off may begin before the root cube does */
+  if (ray_meets_root(ray, &t_enter, &t_leave))
+    t_begin = fmax(t_begin, t_enter);
+#endif
+  walk_start(POOL_ARGS, &walk, ray, t_begin);
   float t_from = -INFINITY;
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {

@@ -1,6 +1,7 @@
 #include "host/cloud/readers/mesh_sample.h"
 #include "host/cloud/mesh_borders.h"
 #include "host/run.h"
+#include "octree/parallel.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -146,6 +147,30 @@ Vector3f normal_at(const MeshTriangle& t, const Candidate& c) {
   return smooth.dot(facing) < 0.0f ? Vector3f(-smooth / length) : Vector3f(smooth / length);
 }
 
+/// Where faces end within `reach` of the points; `from`: the triangle of each.
+void add_borders(const std::vector<MeshTriangle>& triangles, const std::vector<std::uint32_t>& from, double reach,
+                 PointCloud& cloud) {
+  std::vector<Vector3d> corners;
+  MeshBorders::Triangles faces;
+  for (const MeshTriangle& t : triangles) {
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    faces.push_back({first, first + 1, first + 2});
+    corners.insert(corners.end(), t.position.begin(), t.position.end());
+  }
+  const MeshBorders borders(corners, faces);
+  if (!borders.any()) return;
+  constexpr std::size_t grain = 4096;
+  std::vector<std::vector<ClippedPoint>> found((cloud.size() + grain - 1) / grain);
+  parallel_ranges(cloud.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const ClipStrips clip = borders.around(cloud.position[p], cloud.normal[p].cast<double>(), {from[p]}, reach);
+      if (!clip.strip[0].axis.isZero(0)) found[begin / grain].push_back({static_cast<std::uint32_t>(p), clip});
+    }
+  });
+  for (const auto& part : found)
+    cloud.clipped.insert(cloud.clipped.end(), part.begin(), part.end());
+}
+
 } // namespace
 
 double usable_area(const MeshTriangle& t) {
@@ -169,17 +194,8 @@ PointCloud sample_triangles(const std::vector<MeshTriangle>& triangles, double w
       for (const Vector3d& p : t.position)
         origin = origin.cwiseMin(p);
 
-  std::vector<Vector3d> corners;
-  MeshBorders::Triangles faces;
-  for (const MeshTriangle& t : triangles) {
-    const auto first = static_cast<std::uint32_t>(corners.size());
-    faces.push_back({first, first + 1, first + 2});
-    corners.insert(corners.end(), t.position.begin(), t.position.end());
-  }
-  const MeshBorders borders(corners, faces);
-  const double reach = border_reach * std::sqrt(area / wanted);
-
   PointCloud cloud;
+  std::vector<std::uint32_t> from; // triangle of each point
   Occupied occupied(closest_in_spacings * std::sqrt(area / wanted), origin, static_cast<std::size_t>(wanted));
   const auto tries = static_cast<std::uint64_t>(std::ceil(wanted)) * tries_per_point;
   for (std::uint64_t i = 0; i < tries; ++i) {
@@ -190,12 +206,10 @@ PointCloud sample_triangles(const std::vector<MeshTriangle>& triangles, double w
     cloud.position.push_back(c.position);
     cloud.normal.push_back(normal_at(t, c));
     if (with_colour) cloud.colour.push_back(interpolate(t.colour, c.weight));
-    if (!borders.any()) continue;
-    const ClipStrips clip =
-        borders.around(c.position, cloud.normal.back().cast<double>(), {static_cast<std::uint32_t>(c.triangle)}, reach);
-    if (!clip.strip[0].axis.isZero(0)) cloud.clipped.push_back({static_cast<std::uint32_t>(cloud.size() - 1), clip});
+    from.push_back(static_cast<std::uint32_t>(c.triangle));
   }
   cloud.area.assign(cloud.size(), static_cast<float>(area / static_cast<double>(cloud.size())));
+  add_borders(triangles, from, border_reach * std::sqrt(area / wanted), cloud);
   return cloud;
 }
 

@@ -2,6 +2,7 @@
 #include "host/cloud/mesh_borders.h"
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -217,6 +218,43 @@ TEST_CASE("meshes with everything at one vertex or on one edge are read in time"
     split_at_edges(mesh);
     CHECK(mesh.size() >= many + 2u);
     mesh.normal.assign(mesh.size(), Eigen::Vector3f::UnitZ());
-    borders_from_faces(mesh, std::vector<float>(mesh.size(), 0.1f));
+    mesh.radius.assign(mesh.size(), 0.1f);
+    borders_from_faces(mesh);
   }
+}
+
+TEST_CASE("triangles without an area neither split vertices nor end faces", "[cloud][mesh_borders]") {
+  PointCloud plane;
+  add_grid(plane, Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY(), 4);
+  const std::size_t boundary = ends(MeshBorders(plane.position, plane.triangle), plane);
+  const auto nan = std::numeric_limits<double>::quiet_NaN();
+  plane.position.emplace_back(nan, 0, 0);
+  const auto last = static_cast<std::uint32_t>(plane.size() - 1);
+  plane.triangle.push_back({6, 6, 7});    // twice one corner
+  plane.triangle.push_back({6, 7, 8});    // on a line
+  plane.triangle.push_back({6, 7, last}); // not a number
+  plane.triangle.push_back({6, 7, 1000}); // not there
+  const MeshBorders borders(plane.position, plane.triangle);
+  CHECK(ends(borders, plane) == boundary + 4 * 3); // the odd ones go on nowhere
+  CHECK_FALSE(borders.is_used(plane.triangle.size() - 1));
+  const std::size_t before = plane.size();
+  split_at_edges(plane);
+  CHECK(plane.size() == before);
+}
+
+TEST_CASE("a mesh whose faces share no vertices has the area of one whose do", "[cloud][mesh_borders]") {
+  const PointCloud welded = cube(4);
+  PointCloud soup;
+  for (const auto& t : welded.triangle) {
+    const auto first = static_cast<std::uint32_t>(soup.size());
+    for (const std::uint32_t corner : t)
+      soup.position.push_back(welded.position[corner]);
+    soup.triangle.push_back({first, first + 1, first + 2});
+  }
+  CloudReport report;
+  complete_cloud(soup, {}, report);
+  double area = 0;
+  for (const float a : soup.area)
+    area += a;
+  CHECK(area == Approx(6).epsilon(0.01));
 }
