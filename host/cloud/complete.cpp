@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 namespace pointgi {
@@ -36,14 +37,23 @@ void refuse_missing(const PointCloud& cloud, const CompleteOptions& options) {
 
 /// Faces that are stored both ways round: their points are those of sheets, with two sides.
 bool has_doubled_faces(const PointCloud& cloud) {
-  std::vector<std::array<std::uint32_t, 3>> corners = cloud.triangle;
-  for (auto& face : corners)
-    std::sort(face.begin(), face.end());
-  std::sort(corners.begin(), corners.end());
+  struct Face {
+    std::array<std::uint32_t, 3> corners; ///< ascending
+    bool turned;                          ///< the winding is the other one of two
+  };
+  std::vector<Face> faces;
+  faces.reserve(cloud.triangle.size());
+  for (const auto& t : cloud.triangle) {
+    const bool turned = ((t[0] > t[1]) != (t[1] > t[2])) != (t[0] > t[2]);
+    faces.push_back({t, turned});
+    std::sort(faces.back().corners.begin(), faces.back().corners.end());
+  }
+  std::sort(faces.begin(), faces.end(),
+            [](const Face& a, const Face& b) { return std::tie(a.corners, a.turned) < std::tie(b.corners, b.turned); });
   std::size_t doubled = 0;
-  for (std::size_t i = 1; i < corners.size(); ++i)
-    doubled += corners[i] == corners[i - 1];
-  return 5 * doubled > 2 * corners.size(); // nearly every face has its twin
+  for (std::size_t i = 1; i < faces.size(); ++i)
+    doubled += faces[i].corners == faces[i - 1].corners && faces[i].turned != faces[i - 1].turned;
+  return 5 * doubled > 2 * faces.size(); // nearly every face has its twin
 }
 
 /// What kind of surface each point is on. `of_site`: a value a site; empty: all are on one.

@@ -25,6 +25,7 @@ constexpr double visible = 0.12;        // of the radius: what may stick out unc
 constexpr float level_cosine = 0.9928f; // less than `visible` for a sine
 constexpr double mesh_growth = 1.5;     // of a mesh's: borders are known that far off
 constexpr double most_growth = 2.5;     // of a disc beside an edge; more, and the surroundings are not what they seem
+constexpr double inside = 0.1;          // of the radius: how far at least points lie inside their edges
 constexpr double least_area = 1e-3;     // of a disc, over the square of its radius
 constexpr double smooth_margin = 1.05;  // of the cell's reach: neighbours' planes need not meet where cells do
 constexpr double tower = 1.05;          // radius over the spacing that is unusual
@@ -77,6 +78,7 @@ public:
     ClipStrips clip;
     double radius = 0, area = 0; ///< of a disc that fills its face up to an edge; 0: as they were
     Vector3d normal{0, 0, 0};    ///< of that face, where it is one of several; 0: as it was
+    Vector3d shift{0, 0, 0};     ///< of a point at its very edge: onto its own face
   };
 
   void go_to(std::uint32_t site) {
@@ -109,6 +111,23 @@ public:
   }
 
 private:
+  /// A point on an edge, or past it by noise, would lie in the other face's disc: no light would reach it. It moves
+  /// along its own face, towards the middle of what is left of its disc.
+  static void move_inside(Ends& ends, const Vector3d& axis, double limit) {
+    const double least = inside * ends.radius;
+    if (limit >= least || ends.shift.dot(axis) <= limit - least) return;
+    ends.shift -= (least - limit + ends.shift.dot(axis)) * axis;
+  }
+  static void settle(Ends& ends) {
+    if (ends.shift.isZero(0)) return;
+    for (ClipStrips::Strip& strip : ends.clip.strip) {
+      const double moved = ends.shift.dot(strip.axis);
+      strip.low -= moved;
+      strip.high -= moved;
+    }
+    ends.radius += ends.shift.norm(); // it still covers what it did
+  }
+
   /// Points at one site that face alike share their cell. A sliver between two borders keeps some area.
   Ends with_share(Ends ends, std::uint32_t point) const {
     if (!(ends.radius > 0)) return ends;
@@ -242,8 +261,8 @@ private:
       const Vector3d across = other.normal - other.normal.dot(faces_.plane[0].normal) * faces_.plane[0].normal;
       // Where the disc's plane, which goes through the point, meets the other face; noise may put the point past it.
       const double limit = other.height / across.norm();
-      edge_[k] = other.sticks_out ? Edge{across.normalized(), std::max(0.0, limit)}
-                                  : Edge{-across.normalized(), std::max(0.0, -limit)};
+      edge_[k] = other.sticks_out ? Edge{across.normalized(), std::max(0.0, limit), limit}
+                                  : Edge{-across.normalized(), std::max(0.0, -limit), -limit};
     }
     return faces_.count > 0 && faces_sensor(faces_.plane[0].normal);
   }
@@ -269,6 +288,9 @@ private:
     for (unsigned k = 1; k < faces_.count; ++k) // at an inner edge the other face stands before what reaches past it
       if (faces_.plane[k].sticks_out && edge_[k].limit < ends.radius) add(ends.clip, edge_[k].axis, edge_[k].limit);
     add_rim(ends, rim, ends.radius);
+    for (unsigned k = 1; k < faces_.count; ++k)
+      move_inside(ends, edge_[k].axis, std::max(edge_[k].signed_limit, -ends.radius));
+    settle(ends);
     return ends;
   }
   bool is_on_own_face(const Vector3d& e) const {
@@ -306,6 +328,11 @@ private:
       add_rim(ends, rim, ends.radius);
     }
     add_bent(ends.clip, frame, cell, radius);
+    if (fills_face) {
+      for (const ClipStrips::Strip& strip : rim.strip)
+        if (is_set(strip)) move_inside(ends, strip.axis, strip.high);
+      settle(ends);
+    }
     return ends;
   }
   static void add_rim(Ends& ends, const ClipStrips& rim, double radius) {
@@ -361,6 +388,7 @@ private:
   struct Edge {
     Vector3d axis; ///< outwards
     double limit;
+    double signed_limit; ///< below 0 where the point lies past it
   };
 
   const PointCloud& cloud_;
@@ -415,11 +443,15 @@ void clip_discs(PointCloud& cloud, const Sites& sites, const SiteSpacing& spacin
   // Not before all have looked at their neighbours.
   for (const auto& part : found)
     for (const auto& [point, ends] : part) {
-      if (!ends.normal.isZero(0)) cloud.normal[point] = ends.normal.cast<float>();
+      if (!ends.normal.isZero(0)) {
+        cloud.normal[point] = ends.normal.cast<float>();
+        cloud.structure[point] = Structure::surface; // one side of an edge, not a thing of its own
+      }
       if (ends.radius > 0) {
         cloud.radius[point] = positive_float(ends.radius * unit);
         if (ends.area > 0) cloud.area[point] = positive_float(ends.area * unit * unit);
       }
+      if (!ends.shift.isZero(0)) cloud.position[point] += ends.shift * unit;
       if (!is_set(ends.clip.strip[0])) continue;
       cloud.clipped.push_back({point, ends.clip});
       scale(cloud.clipped.back().clip, unit);

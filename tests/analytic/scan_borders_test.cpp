@@ -1,4 +1,5 @@
 /// Scans and meshes against their true geometry: their silhouettes are where the box's edges are, and straight.
+#include "tests/support/bake.h"
 #include "tests/support/number.h"
 #include "tests/support/render.h"
 #include <Eigen/Core>
@@ -164,4 +165,34 @@ TEST_CASE("a scanned sheet ends half a spacing outside its last points") {
   // Outermost points stand 0.2 to 0.8 spacings from the border: measured 0.24 +- 0.34, and as whole discs 1.16 +- 0.60.
   CHECK(std::abs(found.mean) < 0.35);
   CHECK(found.deviation < 0.45);
+}
+
+TEST_CASE("points at the edges of a mesh or a scan see the sky as those beside them do") {
+  const TemporaryFolder folder;
+  write_grid(folder.file("mesh.ply"));
+  write_scan(folder.file("scan.ply"), 0.0, 1, true);
+  write_scan(folder.file("noisy.ply"), 0.2, 1, true);
+  for (const std::string name : {"mesh.ply", "scan.ply", "noisy.ply"}) {
+    // A second object has splats written, not the file's points.
+    const auto points =
+        bake("version = 1\n[environment]\nradiance = [1.0, 1.0, 1.0]\n[[material]]\nname = \"white\"\ntype = "
+             "\"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n[[cloud]]\nfile = \"" +
+             folder.file(name) +
+             "\"\nmaterial = \"white\"\n[[shape]]\ntype = \"quad\"\ncorner = [3.0, 3.0, 3.0]\nedge_u = [0.01, 0.0, "
+             "0.0]\nedge_v = [0.0, 0.01, 0.0]\nspacing = 0.01\nmaterial = \"white\"\n");
+    double least = 1e9, sum = 0;
+    std::size_t dark = 0;
+    for (const LitPoint& p : points) {
+      const double share = p.radiosity[1] / (0.5 * 3.14159265358979323846); // of all the sky's light
+      least = std::min(least, share);
+      sum += share;
+      dark += share < 0.8;
+    }
+    CAPTURE(name, points.size(), least);
+    WARN(name << ": least " << least << ", mean " << sum / static_cast<double>(points.size()) << ", dark " << dark);
+    // Nothing hides the sky from a box. Points of a noisy scan stand before and behind each other.
+    const bool noisy = name == "noisy.ply";
+    CHECK(sum / static_cast<double>(points.size()) > (noisy ? 0.95 : 0.995));
+    CHECK(static_cast<double>(dark) <= (noisy ? 0.05 : 0.0) * static_cast<double>(points.size()));
+  }
 }
