@@ -26,6 +26,7 @@ constexpr float level_cosine = 0.9928f; // less than `visible` for a sine
 constexpr double mesh_growth = 1.5;     // of a mesh's: borders are known that far off
 constexpr double most_growth = 2.5;     // of a disc beside an edge; more, and the surroundings are not what they seem
 constexpr double inside = 0.1;          // of the radius: how far at least points lie inside their edges
+constexpr double most_noise = 0.8;      // spacings: a fifth of one at four standard deviations
 constexpr double least_area = 1e-3;     // of a disc, over the square of its radius
 constexpr double smooth_margin = 1.05;  // of the cell's reach: neighbours' planes need not meet where cells do
 constexpr double tower = 1.05;          // radius over the spacing that is unusual
@@ -281,7 +282,7 @@ private:
     cut_at(rim, frame, cell);
     const double reach = splat_overlap * std::sqrt(cell.reach2());
     Ends ends;
-    if (cell.open() || reach > most_growth * radius) return ends;
+    if (cell.open() || reach > most_growth * radius || is_past_edge()) return ends;
     ends.radius = std::max(radius, reach);
     ends.area = cell.area();
     if (!evidence_.normals_given) ends.normal = frame.n;
@@ -289,9 +290,14 @@ private:
       if (faces_.plane[k].sticks_out && edge_[k].limit < ends.radius) add(ends.clip, edge_[k].axis, edge_[k].limit);
     add_rim(ends, rim, ends.radius);
     for (unsigned k = 1; k < faces_.count; ++k)
-      move_inside(ends, edge_[k].axis, std::max(edge_[k].signed_limit, -ends.radius));
+      move_inside(ends, edge_[k].axis, edge_[k].signed_limit);
     settle(ends);
     return ends;
+  }
+  /// Whether the point lies farther past an edge of its face than noise explains.
+  bool is_past_edge() const {
+    return std::any_of(edge_.begin() + 1, edge_.begin() + faces_.count,
+                       [&](const Edge& edge) { return edge.signed_limit < -most_noise * spacing_[site_]; });
   }
   bool is_on_own_face(const Vector3d& e) const {
     const auto off = [&](unsigned k) { return std::abs(e.dot(faces_.plane[k].normal) - faces_.plane[k].height); };
