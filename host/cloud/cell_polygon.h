@@ -62,12 +62,6 @@ public:
     }
     return 0.5 * twice;
   }
-  /// Whether holds(corner) is true of every corner.
-  template <class Holds>
-  bool all_corners(const Holds& holds) const {
-    return std::all_of(corner_.begin(), corner_.begin() + count_,
-                       [&](const Corner& c) { return holds(Eigen::Vector2d(c.x, c.y)); });
-  }
   /// How far the polygon reaches along `axis` (unit).
   double reach_along(const Eigen::Vector2d& axis) const {
     double most = 0;

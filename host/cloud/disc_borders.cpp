@@ -17,7 +17,6 @@ namespace {
 
 constexpr unsigned border_neighbours = 20; // as many as Sites keep
 constexpr unsigned planes_a_site = 8;
-constexpr double edge_cosine = 0.866;   // 30°: across an edge, as in unfold()
 constexpr double face_cosine = 0.9;     // 25°: of neighbours' normals, beyond which edges are looked for
 constexpr double across_cosine = 0.9;   // of the axes of two borders; nearer to parallel and they are one
 constexpr double beside_cosine = 0.7;   // of a border's axis with a direction that it bounds
@@ -354,7 +353,7 @@ private:
     for (unsigned j = 0; j < count_; ++j) {
       const Vector3d m = normal_alike(near_[j].site, frame.n);
       Vector2d flat;
-      if (frame.n.dot(m) < edge_cosine && is_beyond_edge(offset(j), rim)) continue;
+      if (frame.n.dot(m) < detail::crease_cosine && is_beyond_edge(offset(j), rim)) continue;
       if (unfold(frame, m, offset(j), spacing_[site_], flat)) cell.cut(flat);
     }
     cut_at(rim, frame, cell);
