@@ -2,6 +2,7 @@
 #include "host/cloud/bent_surface.h"
 #include "host/cloud/cell_polygon.h"
 #include "host/cloud/faces.h"
+#include "host/cloud/splat_size.h"
 #include "host/cloud/unfold.h"
 #include "octree/parallel.h"
 #include <algorithm>
@@ -59,10 +60,6 @@ void add(ClipStrips& clip, const Vector3d& axis, double limit) {
       return;
     }
   }
-}
-
-float positive_float(double value) {
-  return std::max(static_cast<float>(value), std::numeric_limits<float>::min());
 }
 
 /// Finds how the discs of a range of sites end. In local units.
@@ -261,8 +258,7 @@ private:
       const Vector3d across = other.normal - other.normal.dot(faces_.plane[0].normal) * faces_.plane[0].normal;
       // Where the disc's plane, which goes through the point, meets the other face; noise may put the point past it.
       const double limit = other.height / across.norm();
-      edge_[k] = other.sticks_out ? Edge{across.normalized(), std::max(0.0, limit), limit}
-                                  : Edge{-across.normalized(), std::max(0.0, -limit), -limit};
+      edge_[k] = other.sticks_out ? Edge{across.normalized(), limit} : Edge{-across.normalized(), -limit};
     }
     return faces_.count > 0 && faces_sensor(faces_.plane[0].normal);
   }
@@ -277,7 +273,7 @@ private:
     for (unsigned j = 0; j < count_; ++j)
       if (is_on_own_face(offset(j))) cell.cut(frame.flat(offset(j)));
     for (unsigned k = 1; k < faces_.count; ++k)
-      cell.cut_at(frame.flat(edge_[k].axis), edge_[k].limit);
+      cell.cut_at(frame.flat(edge_[k].axis), edge_[k].reach());
     cut_at(rim, frame, cell);
     const double reach = splat_overlap * std::sqrt(cell.reach2());
     Ends ends;
@@ -286,17 +282,17 @@ private:
     ends.area = cell.area();
     if (!evidence_.normals_given) ends.normal = frame.n;
     for (unsigned k = 1; k < faces_.count; ++k) // at an inner edge the other face stands before what reaches past it
-      if (faces_.plane[k].sticks_out && edge_[k].limit < ends.radius) add(ends.clip, edge_[k].axis, edge_[k].limit);
+      if (faces_.plane[k].sticks_out && edge_[k].limit < ends.radius) add(ends.clip, edge_[k].axis, edge_[k].reach());
     add_rim(ends, rim, ends.radius);
     for (unsigned k = 1; k < faces_.count; ++k)
-      move_inside(ends, edge_[k].axis, edge_[k].signed_limit);
+      move_inside(ends, edge_[k].axis, edge_[k].limit);
     settle(ends);
     return ends;
   }
   /// Whether the point lies farther past an edge of its face than noise explains.
   bool is_past_edge() const {
     return std::any_of(edge_.begin() + 1, edge_.begin() + faces_.count,
-                       [&](const Edge& edge) { return edge.signed_limit < -most_noise * spacing_[site_]; });
+                       [&](const Edge& edge) { return edge.limit < -most_noise * spacing_[site_]; });
   }
   bool is_on_own_face(const Vector3d& e) const {
     const auto off = [&](unsigned k) { return std::abs(e.dot(faces_.plane[k].normal) - faces_.plane[k].height); };
@@ -392,8 +388,9 @@ private:
 
   struct Edge {
     Vector3d axis; ///< outwards
-    double limit;
-    double signed_limit; ///< below 0 where the point lies past it
+    double limit;  ///< below 0 where the point lies past it
+
+    double reach() const { return std::max(0.0, limit); } ///< of the disc
   };
 
   const PointCloud& cloud_;

@@ -274,12 +274,12 @@ private:
   std::array<double, 2> count_{0, 0};
 };
 
+} // namespace
+
 float positive_float(double value) {
   return static_cast<float>(std::clamp(value, static_cast<double>(std::numeric_limits<float>::min()),
                                        static_cast<double>(std::numeric_limits<float>::max())));
 }
-
-} // namespace
 
 SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
                        bool faces_agree, bool noisy) {

@@ -21,4 +21,7 @@ struct SplatSizes {
 SplatSizes splat_sizes(const Sites& sites, const std::vector<Eigen::Vector3f>& normals, const SiteSpacing& spacing,
                        bool faces_agree, bool noisy);
 
+/// As near to the value as a float comes that is positive and finite.
+float positive_float(double value);
+
 } // namespace pointgi
