@@ -2,6 +2,7 @@
 /// One device at work: context, queue, programs, buffers, launches. The only route to the OpenCL API.
 #include "host/cl/device.h"
 #include "host/cl/resource_error.h"
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -131,6 +132,12 @@ public:
   std::size_t programs_compiled() const { return compiled_; }
   std::size_t programs_from_cache() const { return from_cache_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
+  /// What the device may still have for what is kept on it: what was held at most is what is held now, or a little
+  /// more. Half of it where its memory is the host's.
+  std::uint64_t bytes_left() const {
+    const std::uint64_t left = info_.memory_bytes - std::min(info_.memory_bytes, bytes_->peak);
+    return info_.is_cpu ? left / 2 : left;
+  }
 
   /// From now on called before every launch: it may show progress, or throw to end the work there. Empty: nothing is.
   void before_launches(std::function<void()> call) { before_launch_ = std::move(call); }

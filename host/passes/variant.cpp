@@ -137,6 +137,10 @@ Program pairs_program(const TraversalVariant& variant) {
   return program(variant, "visibility/pairs.cl", "");
 }
 
+Program directions_program(const TraversalVariant& variant, bool hemicube) {
+  return program(variant, "radiosity/directions/trace.cl", hemicube ? " -D HEMICUBE" : "");
+}
+
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
   return program(variant, "render/path.cl",
                  group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));

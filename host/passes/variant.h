@@ -82,6 +82,9 @@ Program segments_program(const TraversalVariant& variant);
 /// Visibility of all pairs of points for the direct solver, pairs_visible.
 Program pairs_program(const TraversalVariant& variant);
 
+/// What points see in directions of their own, trace_directions.
+Program directions_program(const TraversalVariant& variant, bool hemicube);
+
 /// The picture by path tracing, path_pixels: a pixel a work-group of 8x4; never with fast math, for it is what others
 /// are measured by. `some_paths`: params.path_states leaves some out.
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);

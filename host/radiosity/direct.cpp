@@ -16,10 +16,7 @@ constexpr double first_pairs = 2e7; ///< of a first launch, of which nothing is 
 void DeviceDirect::make_bands(const DirectOptions& options) {
   const DeviceInfo& info = session_.info();
   const std::uint64_t row_bytes = static_cast<std::uint64_t>(FMM_LANES) * tiles_, wanted = row_bytes * tiles_;
-  // What was held at most is what is held now, or a little more.
-  std::uint64_t left = info.memory_bytes - std::min(info.memory_bytes, session_.peak_bytes());
-  if (info.is_cpu) left /= 2; // the same memory holds what the host has
-  const std::uint64_t available = options.memory_bytes != 0 ? options.memory_bytes : left;
+  const std::uint64_t available = options.memory_bytes != 0 ? options.memory_bytes : session_.bytes_left();
   if (wanted > available)
     throw Error(ErrorKind::memory, info.name + ": radiosity.method = \"direct\" keeps a bit for each pair of its " +
                                        std::to_string(points_.size()) + " points, " + megabytes(wanted) +

@@ -32,6 +32,7 @@ inline constexpr IntegerRange order{2, 6};
 inline constexpr IntegerRange vmap_samples{1, 256};
 inline constexpr IntegerRange point_samples{0, 65536};
 inline constexpr IntegerRange vmap_rays{0, 1'000'000'000'000};
+inline constexpr IntegerRange directions{1, 65536};
 inline constexpr IntegerRange light_samples = spp;
 inline constexpr IntegerRange photons{0, 100'000'000};
 inline constexpr IntegerRange gather_k{1, 1024};

@@ -106,6 +106,9 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto rays = table->integer("vmap_rays", limits::vmap_rays)) radiosity.vmap_rays = *rays;
   if (const auto epsilon = table->number("epsilon", limits::epsilon)) radiosity.epsilon = *epsilon;
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
+  if (const auto directions = table->integer("directions", limits::directions))
+    radiosity.directions = static_cast<int>(*directions);
+  if (const auto set = table->choice("direction_set", {"stratified", "hemicube"})) radiosity.direction_set = *set;
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
   if (const auto samples = table->integer("light_samples", limits::light_samples))

@@ -162,6 +162,8 @@ struct RadiositySettings {
   std::optional<long long> vmap_rays; ///< LinkOptions::most_rays; absent: default_vmap_rays (host/radiosity)
   double epsilon = 5e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
+  int directions = 512;                     ///< of method "directions": of each point
+  std::string direction_set = "stratified"; ///< or "hemicube" (host/radiosity/direction_set.h)
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
   std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs

@@ -179,7 +179,7 @@ std::vector<ProgramUse> all_programs() {
                                {{"test/brute_force.cl", "-D FRONTS_ONLY"}, true, true},
                                {{"test/brute_force.cl", "-D HAS_CLIPS"}, true, true}};
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
-                           "radiosity/direct/receive_from_all.cl"})
+                           "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl"})
     uses.push_back({fmm_program(file), true, true});
   for (const unsigned k : {64u, 512u, 1024u})
     for (const Program& program :
@@ -216,6 +216,8 @@ std::vector<ProgramUse> all_programs() {
     if (usual_walk && usual_group) add(samplers_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
+    for (const bool hemicube : {false, true})
+      if (!hemicube || usual_walk) add(directions_program(v, hemicube), cpu, gpu);
     add(path_program(v, traced, true), cpu, gpu);
     add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);

@@ -1,0 +1,121 @@
+#include "host/radiosity/directions.h"
+#include "shared/fmm_types.h"
+#include <algorithm>
+
+namespace pointgi {
+
+namespace {
+
+/// Points of the first launch, of which nothing is known yet.
+constexpr double first_traced = 256, first_received = 65536;
+
+constexpr std::size_t receive_group = 64;
+
+std::uint64_t in_whole_blocks(std::uint64_t points) {
+  return points / FMM_LANES * FMM_LANES;
+}
+
+} // namespace
+
+DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                                   std::size_t pool_points, View<std::uint32_t> places,
+                                   const DirectionsOptions& options)
+    : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
+      pool_points_(pool_points), group_(variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
+      places_(places.begin(), places.end()), trace_pace_(first_traced, busy_work_items(session.info())),
+      receive_pace_(first_received, busy_work_items(session.info())) {
+  if (places_.empty()) return;
+  const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
+  trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
+  receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
+  place_buffer_ = session.upload(places_);
+  cells_ = session.upload(set_.cells);
+  weights_ = session.upload(set_.weights);
+  ray_count_ = session.allocate<cl_uint>(1);
+  irradiance_ = session.allocate<cl_float4>(places_.size());
+  keep_bands(options);
+}
+
+void DeviceDirections::keep_bands(const DirectionsOptions& options) {
+  const std::uint64_t a_point = sizeof(cl_uint) * set_.weights.size(), points = places_.size();
+  const std::uint64_t piece = session_.info().max_allocation_bytes;
+  const std::uint64_t available = options.memory_bytes != 0 ? options.memory_bytes : session_.bytes_left();
+  const std::uint64_t largest = std::max<std::uint64_t>(FMM_LANES, in_whole_blocks(piece / a_point));
+  // A band that is not kept needs its room, too.
+  at_once_ = static_cast<cl_uint>(std::clamp<std::uint64_t>(in_whole_blocks(available / 8 / a_point), FMM_LANES,
+                                                            std::min<std::uint64_t>(largest, 1u << 16)));
+  std::uint64_t keep = points;
+  if (points * a_point > available)
+    keep = in_whole_blocks((available - std::min(available, at_once_ * a_point)) / a_point);
+  while (kept_ < keep) {
+    Band band;
+    band.first = kept_;
+    band.end = static_cast<cl_uint>(std::min(keep, kept_ + largest));
+    const std::uint64_t room = (band.end - band.first + FMM_LANES - 1) / FMM_LANES * FMM_LANES;
+    band.hits = session_.allocate<cl_uint>(room * set_.weights.size());
+    trace(band, [&](double share) {
+      if (options.progress)
+        options.progress((band.first + share * (band.end - band.first)) / static_cast<double>(keep));
+    });
+    kept_ = band.end;
+    bands_.push_back(std::move(band));
+  }
+}
+
+void DeviceDirections::trace(const Band& band, const std::function<void(double)>& progress) {
+  const auto count = static_cast<cl_uint>(set_.weights.size());
+  for_each_batch(
+      EqualItems{band.end - band.first}, trace_pace_, {{}, progress}, [&](std::size_t first, std::size_t size) {
+        const cl_uint from = band.first + static_cast<cl_uint>(first);
+        session_.fill(ray_count_, cl_uint{0}, 1);
+        const double seconds = session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves,
+                                               pools_.points, place_buffer_, from, from + static_cast<cl_uint>(size),
+                                               cells_, count, seed_, band.hits, band.first, ray_count_, step_delta_);
+        rays_ += session_.download(ray_count_, 1)[0];
+        trace_seconds_ += seconds;
+        return seconds;
+      });
+}
+
+void DeviceDirections::receive(const Band& band, const Buffer<cl_float4>& radiosity) {
+  for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t size) {
+    const cl_uint from = band.first + static_cast<cl_uint>(first);
+    return session_.launch(receive_, LaunchShape::line(size, receive_group), band.hits, band.first, from,
+                           from + static_cast<cl_uint>(size), weights_, static_cast<cl_uint>(set_.weights.size()),
+                           radiosity, irradiance_);
+  });
+}
+
+void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::vector<double>& irradiance) {
+  if (radiosity.size != 3 * places_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
+  irradiance.clear();
+  if (places_.empty()) return;
+  std::vector<cl_float4> of_pool(pool_points_, cl_float4{{0, 0, 0, 0}});
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      of_pool[places_[i]].s[c] = static_cast<float>(radiosity[3 * i + c]);
+  const auto sent = session_.upload(of_pool);
+  for (const Band& band : bands_)
+    receive(band, sent);
+  Band again;
+  if (kept_ < places_.size()) again.hits = session_.allocate<cl_uint>(std::size_t{at_once_} * set_.weights.size());
+  for (again.first = kept_; again.first < places_.size(); again.first = again.end) {
+    again.end = static_cast<cl_uint>(std::min<std::size_t>(places_.size(), again.first + at_once_));
+    trace(again, {});
+    receive(again, sent);
+  }
+  const auto received = session_.download(irradiance_, places_.size());
+  irradiance.resize(radiosity.size);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      irradiance[3 * i + c] = received[i].s[c];
+}
+
+std::uint64_t DeviceDirections::kept_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Band& band : bands_)
+    bytes += sizeof(cl_uint) * band.hits.size;
+  return bytes;
+}
+
+} // namespace pointgi

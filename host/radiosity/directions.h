@@ -1,0 +1,71 @@
+#pragma once
+/// H(B) by what each point sees in a set of directions (method.md section 8; kernels/radiosity/directions): rays grow
+/// as the points, whatever stands between them.
+#include "fmm/solve/radiosity_operator.h"
+#include "host/cl/batches.h"
+#include "host/cl/session.h"
+#include "host/passes/device_pools.h"
+#include "host/radiosity/direction_set.h"
+#include <functional>
+
+namespace pointgi {
+
+struct DirectionsOptions {
+  DirectionPattern pattern = DirectionPattern::stratified;
+  unsigned directions = 512; ///< a point
+  unsigned seed = 1;
+  float step_delta = 0.0f;                    ///< root cube units, of the absolute-delta variant only
+  std::uint64_t memory_bytes = 0;             ///< what kept hits may take, 4 bytes a ray; 0: what the device has left
+  std::function<void(double share)> progress; ///< of the rays that are kept, [0, 1], after every launch; may be empty
+};
+
+/// Traces the directions of all points and keeps the hits, as many as fit; those of the other points are traced again
+/// at each apply. The same bits either way, and for any launches: what a point sees depends on it and the seed alone.
+class DeviceDirections : public RadiosityOperator {
+public:
+  /// `places`: of the points that exchange light, in a pool of `pool_points`. `pools` are those of `variant` and hold
+  /// all that blocks. `session` and `pools` must outlive this. Throws Error(device), Error(memory).
+  DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, std::size_t pool_points,
+                   View<std::uint32_t> places, const DirectionsOptions& options);
+
+  std::size_t points() const override { return places_.size(); }
+  /// Linear in B whatever the linearisation point is.
+  void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
+
+  unsigned directions() const { return static_cast<unsigned>(set_.weights.size()); } ///< a point
+  std::uint64_t rays() const { return rays_; }            ///< with those that were traced again
+  std::uint64_t kept_bytes() const;                       ///< of hits
+  double trace_seconds() const { return trace_seconds_; } ///< of the device
+
+private:
+  /// The hits of the points [first, end) of `places`.
+  struct Band {
+    Buffer<cl_uint> hits;
+    cl_uint first = 0, end = 0;
+  };
+
+  void keep_bands(const DirectionsOptions& options);
+  /// progress: of the band's points.
+  void trace(const Band& band, const std::function<void(double)>& progress);
+  void receive(const Band& band, const Buffer<cl_float4>& radiosity);
+
+  Session& session_;
+  DevicePools pools_;
+  DirectionSet set_;
+  std::size_t pool_points_, group_;
+  cl_uint seed_;
+  float step_delta_;
+  std::vector<std::uint32_t> places_;
+  std::vector<Band> bands_;        ///< kept: from the first point on
+  cl_uint kept_ = 0, at_once_ = 0; ///< points of all of these; of a band that is not
+  Buffer<cl_uint> place_buffer_, ray_count_;
+  Buffer<std::array<float, 4>> cells_;
+  Buffer<float> weights_;
+  Buffer<cl_float4> irradiance_;
+  cl::Kernel trace_, receive_;
+  Pace trace_pace_, receive_pace_; ///< points
+  std::uint64_t rays_ = 0;
+  double trace_seconds_ = 0.0;
+};
+
+} // namespace pointgi

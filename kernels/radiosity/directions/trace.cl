@@ -1,0 +1,64 @@
+/* Directional sampling (method.md section 8): which splat each point sees in each of a set of directions.
+ *   HEMICUBE  the directions are those of a hemicube's cells; else cells of the disc below the hemisphere, in each of
+ *             which a place is drawn */
+#define BOUNCED_RAYS
+#include "lib/sampling.cl"
+#include "shared/fmm_types.h"
+#include "traverse/traversal.cl"
+
+/* Direction k of a point, unit, in its own frame: its numbers depend on point, k and seed alone.
+ * `cell`: first u, width in u, first v, width in v of the disc (cosine_direction); with HEMICUBE x, y, z, which are turned
+ * about the normal by an angle of the point's own, or the cells' borders would be those of all points. */
+static inline float3 direction_in_cell(float3 normal, float4 cell, uint point, uint k, uint seed) {
+#ifdef HEMICUBE
+  const uint4 h = pcg4d((uint4)(point, 0u, 0x48454D49u, seed));
+  const float phi = 6.2831853f * unit_float(h.x), c = cos(phi), s = sin(phi);
+  float3 a, b;
+  tangents(normal, &a, &b);
+  return normalize3((c * cell.x - s * cell.y) * a + (s * cell.x + c * cell.y) * b + cell.z * normal);
+#else
+  const uint4 h = pcg4d((uint4)(point, k, 0x44495253u, seed));
+  return cosine_direction(normal, fma(unit_float(h.x), cell.y, cell.x), fma(unit_float(h.y), cell.w, cell.z));
+#endif
+}
+
+/* Hits are kept in blocks of FMM_LANES points: word FMM_LANES (block * count + k) + lane is that of direction k. */
+#define HIT_AT(i, k, count) (FMM_LANES * ((ulong)((i) / FMM_LANES) * (count) + (k)) + (i) % FMM_LANES)
+
+/* hits[HIT_AT(i - first, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or NO_SPLAT:
+ * nothing, or the back of something, which is black.
+ * NDRange: 1-D, padded, a work-item a point i, first <= i < end; `first` a multiple of FMM_LANES.
+ *   directions  `count` cells (direction_in_cell)
+ *   rays        grows by the number of rays traced */
+__kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,
+                               const __global float4* directions, uint count, uint seed, __global uint* hits,
+                               uint held_from, __global uint* rays, float step_delta) {
+  const uint i = first + get_global_id(0);
+  if (i >= end)
+    return;
+  const uint point = places[i];
+  const float4 centre = pool_point_texel(POINT_TEXELS * point), normal = pool_point_texel(POINT_TEXELS * point + 1u);
+  OcclusionEnds ends = free_ends();
+  ends.origin_normal = normal.xyz;
+  ends.origin_radius = centre.w;
+  Ray ray;
+  ray.origin = centre.xyz;
+  ray.t_min = -SEGMENT_MARGIN(centre.w);
+  ray.t_max = INFINITY;
+#ifdef STEP_ABSOLUTE
+  ray.step_delta = step_delta;
+#endif
+  float traced = 0.0f;
+  for (uint k = 0u; k < count; ++k) {
+    ray.direction = direction_in_cell(normal.xyz, directions[k], point, k, seed);
+    traced += 1.0f;
+    Hit hit = visible_hit(POOL_ARGS, ray, ends, trace_closest_from(POOL_ARGS, ray, ends), &traced);
+    if (hit.splat != NO_SPLAT) {
+      hit.splat = facing_side(POOL_ARGS, hit.splat, ray.direction);
+      if (is_back(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction))
+        hit.splat = NO_SPLAT;
+    }
+    hits[HIT_AT(i - held_from, k, count)] = hit.splat;
+  }
+  atomic_add(rays, (uint)traced);
+}

@@ -1,0 +1,141 @@
+/// Directional sampling on the device: what points see, against linear scans and closed forms.
+#include "host/passes/build_pools.h"
+#include "host/radiosity/directions.h"
+#include "host/tune/variant_list.h"
+#include "tests/support/device.h"
+#include "tests/support/exchange.h"
+#include "tests/support/rooms.h"
+#include <catch2/catch.hpp>
+#include <numeric>
+
+using namespace pointgi;
+using namespace pointgi::test;
+
+namespace {
+
+std::vector<std::uint32_t> all_places(std::size_t count) {
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+struct Traced {
+  TraversalVariant variant;
+  OctreePools packed;
+  DevicePools pools;
+  std::vector<std::uint32_t> places;
+
+  explicit Traced(const std::vector<Splat>& splats, TraversalForm form = TraversalForm::wide)
+      : variant(plain_variant(form)), packed(build_pools(splats, variant)),
+        pools(upload_pools(session(), packed, variant.storage)), places(all_places(splats.size())) {}
+
+  View<Splat> points() const { return points_of(packed); }
+  template <class Radiosity>
+  std::vector<double> irradiance(const DirectionsOptions& options, const Radiosity& radiosity) const {
+    DeviceDirections exchange(session(), pools, variant, places.size(), places, options);
+    std::vector<double> b, h;
+    for (const Splat& s : points())
+      b.insert(b.end(), 3, radiosity(s));
+    exchange.apply(b, LinearisationPoint::current, h);
+    return h;
+  }
+};
+
+DirectionsOptions with(unsigned directions, DirectionPattern pattern = DirectionPattern::stratified) {
+  DirectionsOptions options;
+  options.directions = directions;
+  options.pattern = pattern;
+  return options;
+}
+
+std::vector<Splat> widened(std::vector<Splat> splats) {
+  for (Splat& s : splats)
+    s.radius *= 1.1f;
+  return splats;
+}
+
+/// Form factor of [0, x] x [0, y] at the distance 1 with the differential area at 0 that faces it.
+double corner(double x, double y) {
+  const double p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * 3.14159265358979);
+}
+
+} // namespace
+
+TEST_CASE("directions on the device: inside a closed surface all light arrives, point by point") {
+  // Stratified samples of a constant have no noise: what is missing are rays that got out or met a back.
+  // Discs that leave no pinholes at the corners of their squares: a hemicube's lattice may look through a wall's.
+  for (const auto& splats : {widened(inside_sphere(4000)), widened(inside_cube(25))})
+    for (const DirectionPattern pattern : {DirectionPattern::stratified, DirectionPattern::hemicube}) {
+      const auto h = Traced(splats).irradiance(with(256, pattern), [](const Splat&) { return 1.0; });
+      const double least = *std::min_element(h.begin(), h.end());
+      const double mean = std::accumulate(h.begin(), h.end(), 0.0) / static_cast<double>(h.size());
+      CAPTURE(splats.size(), least, mean, static_cast<int>(pattern));
+      CHECK(mean == Approx(1.0).epsilon(2e-3));
+      CHECK(least > 0.97); // of 256 rays of the worst point
+      CHECK(*std::max_element(h.begin(), h.end()) < 1.0 + 1e-5);
+    }
+}
+
+TEST_CASE("directions on the device: what a face of a cube gives each point of the opposite one, by the closed form") {
+  const Traced cube(inside_cube(25));
+  const auto floor = [](const Splat& s) { return s.normal[2] > 0.9f; };
+  double before = INFINITY;
+  for (const unsigned count : {64u, 256u, 1024u}) {
+    const auto h = cube.irradiance(with(count), [&](const Splat& s) { return floor(s) ? 1.0 : 0.0; });
+    double square = 0.0, bias = 0.0;
+    int points = 0;
+    for (std::size_t i = 0; i < cube.places.size(); ++i) {
+      const Splat& s = cube.points()[i];
+      if (!(s.normal[2] < -0.9f)) continue;
+      // Lengths in sides of the cube, whose face lies 1 away.
+      const double x = (s.position[0] - 0.1) / 0.8, y = (s.position[1] - 0.1) / 0.8;
+      const double truth = corner(x, y) + corner(1 - x, y) + corner(x, 1 - y) + corner(1 - x, 1 - y);
+      square += (h[3 * i] - truth) * (h[3 * i] - truth);
+      bias += h[3 * i] - truth;
+      ++points;
+    }
+    const double error = std::sqrt(square / points);
+    CAPTURE(count, error);
+    CHECK(std::fabs(bias / points) < 0.002); // of 0.2: no light is lost or won
+    // Strata cut by the border of the face count at random: n^(-3/4); without strata n^(-1/2), half at each step.
+    CHECK(error < 0.45 * before);
+    before = error;
+  }
+  CHECK(before < 0.004);
+}
+
+TEST_CASE("directions on the device: the same in both forms of the octree, with hits kept or traced again") {
+  const auto splats = room_splats(1500);
+  const auto bright = [](const Splat& s) { return 0.2 + double{s.position[0]}; };
+  const Traced wide(splats), step(splats, TraversalForm::step);
+  const auto kept = wide.irradiance(with(64), bright);
+  CHECK(relative_l2(step.irradiance(with(64), bright), kept) < 1e-3); // a ray in a thousand meets a rim in one of them
+  for (const std::uint64_t bytes : {1u, 100'000u}) {                  // nothing fits; some does
+    DirectionsOptions options = with(64);
+    options.memory_bytes = bytes;
+    CAPTURE(bytes);
+    CHECK(wide.irradiance(options, bright) == kept);
+  }
+}
+
+TEST_CASE("directions on the device: rays and bytes are points times directions, and no ray is traced twice") {
+  const Traced room(inside_cube(16));
+  const std::size_t points = room.places.size();
+  DeviceDirections exchange(session(), room.pools, room.variant, points, room.places, with(100));
+  CHECK(exchange.directions() == 100);
+  CHECK(exchange.rays() == 100 * points); // a closed cube has no rims that rays would go past
+  CHECK(exchange.kept_bytes() == 4 * 100 * points);
+  std::vector<double> b(3 * points, 1.0), h, again;
+  exchange.apply(b, LinearisationPoint::current, h);
+  for (double& value : b)
+    value = -2.0;
+  exchange.apply(b, LinearisationPoint::kept, again);
+  CHECK(exchange.rays() == 100 * points);
+  for (std::size_t i = 0; i < h.size(); ++i)
+    CHECK(again[i] == -2.0 * h[i]); // linear
+  CHECK_THROWS_AS(exchange.apply(View<double>(b.data(), 3), LinearisationPoint::current, h), std::invalid_argument);
+  DeviceDirections none(session(), room.pools, room.variant, points, {}, with(100));
+  none.apply({}, LinearisationPoint::current, h);
+  CHECK(h.empty());
+}
