@@ -16,6 +16,12 @@ Program program(const TraversalVariant& variant, const char* file, const std::st
   return {file, build_options(variant) + more + (variant.fast_math && may ? fast_options : "")};
 }
 
+/// Nothing of a march through voxels depends on the traversal.
+Program sight_program(const TraversalVariant& variant, const char* file, unsigned voxels, const std::string& more) {
+  if (voxels == 0) return program(variant, file, more);
+  return {file, "-D VISIBILITY_VOXELS=" + std::to_string(voxels) + more};
+}
+
 std::string group_options(WorkGroup group) {
   return " -D GROUP_X=" + std::to_string(group.x) + " -D GROUP_Y=" + std::to_string(group.y);
 }
@@ -133,8 +139,12 @@ Program segments_program(const TraversalVariant& variant) {
   return program(variant, "visibility/segments.cl", "");
 }
 
-Program pairs_program(const TraversalVariant& variant) {
-  return program(variant, "visibility/pairs.cl", "");
+Program pairs_program(const TraversalVariant& variant, unsigned voxels) {
+  return sight_program(variant, "visibility/pairs.cl", voxels, "");
+}
+
+Program senders_program(const TraversalVariant& variant, unsigned voxels, bool monte_carlo) {
+  return sight_program(variant, "radiosity/gather/senders_visible.cl", voxels, monte_carlo ? " -D MONTE_CARLO" : "");
 }
 
 Program directions_program(const TraversalVariant& variant, bool hemicube) {

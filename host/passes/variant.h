@@ -79,8 +79,11 @@ Program samplers_program(const TraversalVariant& variant);
 
 /// Visibility between points for the V-map, segments_blocked.
 Program segments_program(const TraversalVariant& variant);
-/// Visibility of all pairs of points for the direct solver, pairs_visible.
-Program pairs_program(const TraversalVariant& variant);
+/// Visibility of all pairs of points for the direct solver, pairs_visible; of points and senders, senders_visible,
+/// which are picked anew in each pass with `monte_carlo`. `voxels`: a side of the occupancy grid that is marched
+/// through, a power of two from 32 to 128; 0: by rays.
+Program pairs_program(const TraversalVariant& variant, unsigned voxels = 0);
+Program senders_program(const TraversalVariant& variant, unsigned voxels, bool monte_carlo);
 
 /// What points see in directions of their own, trace_directions.
 Program directions_program(const TraversalVariant& variant, bool hemicube);

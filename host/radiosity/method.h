@@ -31,6 +31,9 @@ struct MethodStatistic {
   std::uint64_t value;
 };
 
+/// Told after each pass of a method that has passes, from 1 on: the irradiance so far, RadiosityField::irradiance.
+using PassWatch = std::function<void(unsigned pass, const std::vector<float>& irradiance)>;
+
 /// What a method has found out of a scene before it knows any light: kept, and solved for as much light as enters.
 class PreparedRadiosity {
 public:
@@ -50,6 +53,8 @@ public:
   virtual std::string summary() const = 0;
   /// What --stats writes besides what all methods have.
   virtual std::vector<MethodStatistic> statistics() const = 0;
+
+  PassWatch after_pass; ///< called while solving, where RadiosityMethod::has_passes; may be empty
 };
 
 struct RadiosityMethod {
@@ -62,6 +67,7 @@ struct RadiosityMethod {
   std::unique_ptr<PreparedRadiosity> (*prepare)(Session& session, const ExchangeScene& scene,
                                                 const RadiositySettings& settings, std::optional<RadiosityMap> map,
                                                 const WorkReport& report);
+  bool has_passes = false; ///< the light is there a bounce at a time, and can be looked at after each
 };
 
 /// All methods, the default first.

@@ -22,15 +22,8 @@ private:
   unsigned applies_ = 0;
 };
 
-void check_sizes(View<std::uint32_t> place, const EnteringLight& light) {
-  for (const std::uint32_t p : place)
-    if (3 * (static_cast<std::size_t>(p) + 1) > light.direct.size)
-      throw std::invalid_argument("radiosity: three direct irradiances a point of the pool");
-  if (light.emitted.size != 0 && light.emitted.size != light.direct.size)
-    throw std::invalid_argument("radiosity: emission of all points of the pool, or of none");
-}
+} // namespace
 
-/// Of a pool in which nothing exchanges light.
 RadiosityField dark_field(const EnteringLight& light) {
   RadiosityField field;
   field.irradiance.resize(light.direct.size);
@@ -38,34 +31,48 @@ RadiosityField dark_field(const EnteringLight& light) {
   return field;
 }
 
-} // namespace
+ExchangeProblem exchange_problem(const ExchangedPoints& exchanged, const EnteringLight& light) {
+  for (const std::uint32_t p : exchanged.place)
+    if (3 * (static_cast<std::size_t>(p) + 1) > light.direct.size)
+      throw std::invalid_argument("radiosity: three direct irradiances a point of the pool");
+  if (light.emitted.size != 0 && light.emitted.size != light.direct.size)
+    throw std::invalid_argument("radiosity: emission of all points of the pool, or of none");
+  const std::size_t points = exchanged.points.size;
+  ExchangeProblem problem{std::vector<double>(3 * points), std::vector<double>(3 * points),
+                          std::vector<double>(points)};
+  for (std::size_t k = 0; k < points; ++k) {
+    const Splat& splat = exchanged.points[k];
+    problem.area[k] = splat.area;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = 3 * exchanged.place[k] + c;
+      problem.albedo[3 * k + c] = splat.colour[c];
+      problem.emission[3 * k + c] =
+          splat.colour[c] * light.direct[at] + (light.emitted.size != 0 ? light.emitted[at] : 0.0f);
+    }
+  }
+  return problem;
+}
+
+std::vector<float> irradiance_of_pool(View<double> irradiance, const ExchangedPoints& exchanged, std::size_t size) {
+  std::vector<float> of_pool(size);
+  for (std::size_t k = 0; k < exchanged.place.size; ++k)
+    for (std::size_t c = 0; c < 3; ++c)
+      of_pool[3 * exchanged.place[k] + c] = static_cast<float>(irradiance[3 * k + c]);
+  return of_pool;
+}
 
 RadiosityField solve_by_operator(RadiosityOperator* device, const ExchangedPoints& exchanged,
                                  const EnteringLight& light, double tolerance, const WorkReport& report) {
-  check_sizes(exchanged.place, light);
   if (exchanged.place.size == 0) return dark_field(light);
-  const std::size_t points = exchanged.points.size;
-  std::vector<double> emission(3 * points), albedo(3 * points), area(points);
-  for (std::size_t k = 0; k < points; ++k) {
-    const Splat& splat = exchanged.points[k];
-    area[k] = splat.area;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t at = 3 * exchanged.place[k] + c;
-      albedo[3 * k + c] = splat.colour[c];
-      emission[3 * k + c] = splat.colour[c] * light.direct[at] + (light.emitted.size != 0 ? light.emitted[at] : 0.0f);
-    }
-  }
+  const ExchangeProblem problem = exchange_problem(exchanged, light);
   ReportedExchange exchange(*device, report);
   SolveOptions solve;
   solve.tolerance = tolerance;
   RadiosityField field;
-  field.solution = solve_radiosity(exchange, emission, albedo, area, solve);
+  field.solution = solve_radiosity(exchange, problem.emission, problem.albedo, problem.area, solve);
   std::vector<double> gathered;
   exchange.apply(field.solution.radiosity, LinearisationPoint::current, gathered);
-  field.irradiance.resize(light.direct.size);
-  for (std::size_t k = 0; k < points; ++k)
-    for (std::size_t c = 0; c < 3; ++c)
-      field.irradiance[3 * exchanged.place[k] + c] = static_cast<float>(gathered[3 * k + c]);
+  field.irradiance = irradiance_of_pool(gathered, exchanged, light.direct.size);
   return field;
 }
 

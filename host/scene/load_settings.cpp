@@ -89,6 +89,27 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
                                (up == UpAxis::y || up == UpAxis::minus_y ? "z" : "y") + "\"");
 }
 
+void load_gather(const TableReader& table, RadiositySettings& radiosity) {
+  if (const auto sampling = table.choice("sampling", {"all", "static", "monte_carlo", "mipmap", "adaptive"}))
+    radiosity.sampling = *sampling;
+  if (const auto window = table.integer("window", limits::window)) radiosity.window = static_cast<int>(*window);
+  radiosity.reciprocity = table.boolean("reciprocity");
+  radiosity.visibility_cache = table.boolean("visibility_cache");
+  if (const auto visibility = table.choice("visibility", {"rays", "voxels"})) radiosity.visibility = *visibility;
+  if (const auto voxels = table.integer("voxels", limits::voxels)) radiosity.voxels = static_cast<int>(*voxels);
+  if (radiosity.visibility == "voxels" && radiosity.voxels != 32 && radiosity.voxels != 64 && radiosity.voxels != 128)
+    table.fail("voxels", "visibility = \"voxels\" marches through 32, 64 or 128 voxels a side");
+  if (const auto passes = table.integer("passes", limits::passes)) radiosity.passes = static_cast<int>(*passes);
+  if (radiosity.reciprocity.value_or(false) && radiosity.sampling != "all")
+    table.fail("reciprocity",
+               "reciprocity goes with sampling = \"all\": other samplings ask of a pair in one direction");
+  if (radiosity.visibility_cache.value_or(false) &&
+      (radiosity.sampling == "monte_carlo" || radiosity.sampling == "adaptive"))
+    table.fail("visibility_cache", "sampling = \"" + radiosity.sampling +
+                                       "\" asks for other pairs in each pass; leave visibility_cache out, or choose "
+                                       "\"all\", \"static\" or \"mipmap\"");
+}
+
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   const std::optional<TableReader> table = root.table("radiosity");
   if (!table) return;
@@ -109,6 +130,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto directions = table->integer("directions", limits::directions))
     radiosity.directions = static_cast<int>(*directions);
   if (const auto set = table->choice("direction_set", {"stratified", "hemicube"})) radiosity.direction_set = *set;
+  load_gather(*table, radiosity);
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
   if (const auto samples = table->integer("light_samples", limits::light_samples))

@@ -7,6 +7,8 @@ const std::vector<RadiosityWords>& radiosity_words() {
   static const std::vector<RadiosityWords> all{
       {"fmm", {"order", "vmap_samples", "point_samples", "vmap_rays", "epsilon", "tolerance", "vmap"}},
       {"directions", {"directions", "direction_set", "tolerance"}},
+      {"gather",
+       {"sampling", "window", "reciprocity", "visibility_cache", "visibility", "voxels", "passes", "tolerance"}},
       {"direct", {"tolerance"}},
   };
   return all;

@@ -164,6 +164,14 @@ struct RadiositySettings {
   double tolerance = 1e-3;
   int directions = 512;                     ///< of method "directions": of each point
   std::string direction_set = "stratified"; ///< or "hemicube" (host/radiosity/direction_set.h)
+  std::string sampling =
+      "all";        ///< of method "gather": "static", "monte_carlo", "mipmap", "adaptive" (host/radiosity/gather.h)
+  int window = 128; ///< points that one sender stands for, at most, where not all send
+  std::optional<bool> reciprocity;      ///< one ray a pair for both directions; absent: where all send
+  std::optional<bool> visibility_cache; ///< kept for later passes; absent: where these ask for the same pairs
+  std::string visibility = "rays";      ///< or "voxels": by marching through an occupancy grid
+  int voxels = 64;                      ///< a side of that grid
+  int passes = 0;                       ///< bounces, at most; 0: until the tolerance is reached
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
   std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs

@@ -179,8 +179,13 @@ std::vector<ProgramUse> all_programs() {
                                {{"test/brute_force.cl", "-D FRONTS_ONLY"}, true, true},
                                {{"test/brute_force.cl", "-D HAS_CLIPS"}, true, true}};
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
-                           "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl"})
+                           "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl",
+                           "radiosity/gather/receive_picked.cl"})
     uses.push_back({fmm_program(file), true, true});
+  for (const unsigned voxels : {32u, 64u, 128u})
+    for (const Program& program :
+         {pairs_program({}, voxels), senders_program({}, voxels, false), senders_program({}, voxels, true)})
+      uses.push_back({program, true, true});
   for (const unsigned k : {64u, 512u, 1024u})
     for (const Program& program :
          {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})
@@ -216,6 +221,8 @@ std::vector<ProgramUse> all_programs() {
     if (usual_walk && usual_group) add(samplers_program(v), cpu, gpu);
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
+    for (const bool monte_carlo : {false, true})
+      if (usual_walk) add(senders_program(v, 0, monte_carlo), cpu, gpu);
     for (const bool hemicube : {false, true})
       if (!hemicube || usual_walk) add(directions_program(v, hemicube), cpu, gpu);
     add(path_program(v, traced, true), cpu, gpu);
