@@ -56,11 +56,14 @@ PixelWindow window_of(const FilmOptions& options, const RenderSettings& render) 
 std::string settings_text(const pointgi::Scene& scene, const std::string& integrator, const std::string& paths) {
   const RadiositySettings& r = scene.radiosity;
   const CausticSettings& c = scene.caustics;
-  return fmt::format("{} {} {}; {} {} {} {} {} {:a} {:a} {} {} {}; {} {} {} {:a} {} {}", integrator, paths,
-                     name_of(scene.camera.backfaces.value_or(Backfaces::shade)), r.method, r.order, r.vmap_samples,
-                     r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap, r.direct_light,
-                     r.light_samples.value_or(0), c.photons, c.gather_k, c.power, c.max_radius.value_or(0.0),
-                     c.feedback, c.indirect);
+  const std::string radiosity = fmt::format(
+      "{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {}", r.method, r.order, r.vmap_samples,
+      r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap, r.direct_light,
+      r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.sampling, r.window,
+      r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility, r.voxels, r.passes);
+  return fmt::format("{} {} {}; {}; {} {} {} {:a} {} {}", integrator, paths,
+                     name_of(scene.camera.backfaces.value_or(Backfaces::shade)), radiosity, c.photons, c.gather_k,
+                     c.power, c.max_radius.value_or(0.0), c.feedback, c.indirect);
 }
 
 /// What the picture depends on: splats, lights, camera and samples, as the device reads them, and `settings`.

@@ -53,7 +53,7 @@ nlohmann::json photons_json(const PhotonLedger& l, double watts) {
 }
 
 void add_radiosity(const IndirectLight& light, const RadiositySettings& settings, nlohmann::json& out) {
-  out["radiosity"] = {{"method", settings.method},
+  out["radiosity"] = {{"method", light.method->name},
                       {"direct_light", settings.direct_light},
                       {"iterations", light.solution.applies},
                       {"residual", light.solution.residual},

@@ -144,7 +144,7 @@ Program pairs_program(const TraversalVariant& variant, unsigned voxels) {
 }
 
 Program senders_program(const TraversalVariant& variant, unsigned voxels, bool monte_carlo) {
-  return sight_program(variant, "radiosity/gather/senders_visible.cl", voxels, monte_carlo ? " -D MONTE_CARLO" : "");
+  return sight_program(variant, "visibility/senders_visible.cl", voxels, monte_carlo ? " -D MONTE_CARLO" : "");
 }
 
 Program directions_program(const TraversalVariant& variant, bool hemicube) {

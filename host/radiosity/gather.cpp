@@ -9,7 +9,7 @@ namespace pointgi {
 
 namespace {
 
-constexpr cl_uint senders_at_once = 64;            ///< SENDERS_AT_ONCE of kernels/radiosity/gather/senders_visible.cl
+constexpr cl_uint senders_at_once = 64;            ///< SENDERS_AT_ONCE of kernels/visibility/senders_visible.cl
 constexpr double first_pairs = 2e5;                ///< traced in a first launch, of which nothing is known yet
 constexpr std::uint64_t scratch_bytes = 64u << 20; ///< of what is seen and not kept, about
 

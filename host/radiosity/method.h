@@ -70,10 +70,10 @@ struct RadiosityMethod {
   bool has_passes = false; ///< the light is there a bounce at a time, and can be looked at after each
 };
 
-/// All methods, the default first.
+/// All methods; the first is the one that needs a V-map.
 const std::vector<const RadiosityMethod*>& radiosity_methods();
 
-/// The method of this name; nullptr of "none" and of words that are no method's.
+/// The method of this name; nullptr of "auto", "none" and words that are no method's.
 const RadiosityMethod* radiosity_method(const std::string& name);
 
 } // namespace pointgi

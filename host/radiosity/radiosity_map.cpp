@@ -4,6 +4,8 @@
 #include "host/cl/kernel_source.h"
 #include "host/passes/visibility.h"
 #include "host/radiosity/parts_of_faces.h"
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 namespace pointgi {
@@ -26,24 +28,32 @@ std::vector<Splat> points_at(const ExchangeScene& scene, View<std::uint32_t> pla
 
 namespace {
 
-/// Passes questions on and reports how many were answered.
+/// Passes questions on and reports how many were answered, and how long those take that are still expected.
 class ReportedVisibility : public VisibilityOracle {
 public:
-  ReportedVisibility(VisibilityOracle& oracle, const WorkReport& report) : oracle_(oracle), report_(report) {}
+  ReportedVisibility(VisibilityOracle& oracle, double expected, const WorkReport& report)
+      : oracle_(oracle), expected_(expected), report_(report), begin_(std::chrono::steady_clock::now()) {}
 
   std::vector<std::uint8_t> blocked(View<Segment> segments) override {
     auto answers = oracle_.blocked(segments);
-    rays_ += segments.size;
-    char text[40];
-    std::snprintf(text, sizeof text, "%.1f million rays", 1e-6 * static_cast<double>(rays_));
+    rays_ += static_cast<double>(segments.size);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    char text[100];
+    if (rays_ < expected_)
+      std::snprintf(text, sizeof text, "%.1f of about %.0f million rays, %.0f s left", 1e-6 * rays_, 1e-6 * expected_,
+                    seconds * (expected_ / rays_ - 1.0));
+    else
+      std::snprintf(text, sizeof text, "%.1f million rays", 1e-6 * rays_);
     report_(text);
     return answers;
   }
 
 private:
   VisibilityOracle& oracle_;
+  double expected_;
   const WorkReport& report_;
-  std::uint64_t rays_ = 0;
+  std::chrono::steady_clock::time_point begin_;
+  double rays_ = 0.0;
 };
 
 /// More than rooms and models ask for at the default settings (8 M of 19k points, 16 M of 54k, 245 M of 440k and a
@@ -56,40 +66,55 @@ std::uint64_t default_vmap_rays(std::size_t points, const RadiositySettings& set
   return static_cast<std::uint64_t>(std::min(1e18, finer * (1e7 + 500.0 * static_cast<double>(points))));
 }
 
-/// The tree over them, and their places in its order.
-void cluster(Session& session, const ExchangeScene& scene, float step_delta, bool thesis, RadiosityMap& map) {
-  const std::vector<std::uint32_t> places = exchanging_points(scene);
-  const std::vector<Splat> points = points_at(scene, places);
-  const auto ask = [&](View<Splat> ends, View<Segment> segments) {
-    return DeviceVisibility(session, scene.pools, scene.variant, ends, step_delta).blocked(segments);
-  };
-  std::vector<std::uint32_t> parts;
-  if (!thesis) parts = parts_of_faces(points, ask);
-  map.tree = build_clusters(points, ClusterOptions{}, parts);
-  for (const std::uint32_t k : map.tree.order)
-    map.place.push_back(places[k]);
+float step_delta_of(const ExchangeScene& scene) {
+  return static_cast<float>(scene.variant.step_delta / scene.side);
 }
 
-} // namespace
-
-RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
-                            const WorkReport& report) {
-  RadiosityMap map;
-  const TraversalVariant& variant = scene.variant;
-  const auto step_delta = static_cast<float>(variant.step_delta / scene.side);
-  cluster(session, scene, step_delta, settings.vmap == "thesis", map);
-  if (map.place.empty()) return map;
-  DeviceVisibility oracle(session, scene.pools, variant, map.tree.points, step_delta);
+LinkOptions link_options(const ExchangeScene& scene, const RadiositySettings& settings, std::size_t points) {
   LinkOptions options;
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
-  options.most_rays = settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays)
-                                         : default_vmap_rays(map.place.size(), settings);
+  options.most_rays =
+      settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays) : default_vmap_rays(points, settings);
   options.seed = scene.seed;
   options.thesis = settings.vmap == "thesis";
+  return options;
+}
+
+} // namespace
+
+RadiosityMap cluster_points(Session& session, const ExchangeScene& scene, const RadiositySettings& settings) {
+  RadiosityMap map;
+  const std::vector<std::uint32_t> places = exchanging_points(scene);
+  const std::vector<Splat> points = points_at(scene, places);
+  const auto ask = [&](View<Splat> ends, View<Segment> segments) {
+    return DeviceVisibility(session, scene.pools, scene.variant, ends, step_delta_of(scene)).blocked(segments);
+  };
+  std::vector<std::uint32_t> parts;
+  if (settings.vmap != "thesis") parts = parts_of_faces(points, ask);
+  map.tree = build_clusters(points, ClusterOptions{}, parts);
+  for (const std::uint32_t k : map.tree.order)
+    map.place.push_back(places[k]);
+  return map;
+}
+
+LinkEstimate estimate_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                                 const RadiosityMap& clusters) {
+  if (clusters.place.empty()) return {};
+  DeviceVisibility oracle(session, scene.pools, scene.variant, clusters.tree.points, step_delta_of(scene));
+  return estimate_links(clusters.tree, oracle, link_options(scene, settings, clusters.place.size()), scene.points);
+}
+
+RadiosityMap find_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                             RadiosityMap map, const LinkEstimate& expected, const WorkReport& report) {
+  if (map.place.empty()) return map;
+  const TraversalVariant& variant = scene.variant;
+  DeviceVisibility oracle(session, scene.pools, variant, map.tree.points, step_delta_of(scene));
+  const LinkOptions options = link_options(scene, settings, map.place.size());
   const DeviceInfo& device = session.info();
-  ReportedVisibility reported(oracle, report);
+  const double most = options.most_rays > 0 ? static_cast<double>(options.most_rays) : expected.rays;
+  ReportedVisibility reported(oracle, std::min(expected.rays, most), report);
   char more[80];
   std::snprintf(more, sizeof more, ", delta %a, kernels %016llx",
                 variant.stepping == Stepping::absolute_delta ? variant.step_delta / scene.side : 0.0,
@@ -97,6 +122,11 @@ RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const 
   map.vmap = kept_or_made_links(map.tree, scene.points, reported, options,
                                 device.name + ", " + device.driver + ", " + name_of(variant) + more, &map.kept);
   return map;
+}
+
+RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                            const WorkReport& report) {
+  return find_visibility(session, scene, settings, cluster_points(session, scene, settings), {}, report);
 }
 
 } // namespace pointgi

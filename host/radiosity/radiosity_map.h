@@ -34,8 +34,21 @@ struct RadiosityMap {
   bool kept = false; ///< from an earlier run: its links were not asked for
 };
 
-/// Builds the clusters and asks the device for their visibility; where no splat exchanges light, asks nothing. Throws
+/// The clusters of the points that exchange light, not yet asked for their visibility. Throws Error(device),
+/// Error(memory).
+RadiosityMap cluster_points(Session& session, const ExchangeScene& scene, const RadiositySettings& settings);
+
+/// What find_visibility would ask, from a sample of its questions; nothing where no splat exchanges light. Throws
 /// Error(device), Error(memory).
+LinkEstimate estimate_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                                 const RadiosityMap& clusters);
+
+/// Asks the device for the visibility of the clusters; where no splat exchanges light, asks nothing. `expected`: what
+/// it will ask, by which `report` is told how long it will take. Throws Error(device), Error(memory).
+RadiosityMap find_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                             RadiosityMap clusters, const LinkEstimate& expected, const WorkReport& report);
+
+/// All of it.
 RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                             const WorkReport& report);
 

@@ -60,9 +60,11 @@ inline constexpr NumberRange roughness{0.0, 1.0, false, false, "from 0 (smooth) 
 inline constexpr NumberRange exponent{0.0, 1e6, false, false, "from 0 to 1e6"};
 inline constexpr NumberRange tolerance{0.0, 1.0, true, true, "> 0 and < 1"};
 inline constexpr NumberRange epsilon = tolerance;
+inline constexpr NumberRange least_share{0.0, 1.0, false, true, "from 0 to below 1"};
 /// Of a bare cloud, whose picture comes first and whose light is a guess: a scan of 440k points has a quarter of the
 /// rays and 0.2 % less light between surfaces than with a scene's epsilon.
 inline constexpr double bare_epsilon = 2e-2;
+inline constexpr int bare_directions = 256;
 /// Four times coarser than a scene's epsilon, but not coarser than this: beyond it pairs of clusters that exchange a
 /// tenth of the light would not be divided, and what is drafted would look like another scene.
 inline constexpr double coarsest_draft_epsilon = 0.1;

@@ -88,7 +88,10 @@ Scene scene_of(const SceneDocument& document) {
   scene.shapes = load_shapes(root, names);
   scene.lights = load_lights(root, scene.up, scene.warnings);
   load_environment(root, document.scene_file, scene);
-  if (document.bare) scene.radiosity.epsilon = limits::bare_epsilon;
+  if (document.bare) {
+    scene.radiosity.epsilon = limits::bare_epsilon;
+    scene.radiosity.directions = limits::bare_directions;
+  }
   load_radiosity(root, scene.radiosity);
   load_caustics(root, scene.caustics);
   load_octree(root, scene.octree);

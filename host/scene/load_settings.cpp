@@ -115,7 +115,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (!table) return;
   std::vector<std::string> keys = radiosity_method_keys();
   keys.insert(keys.begin(), "method");
-  keys.insert(keys.end(), {"direct_light", "light_samples"});
+  keys.insert(keys.end(), {"direct_light", "least_share", "light_samples"});
   table->allow_only(keys);
   radiosity.place = table->place();
   if (const auto method = table->choice("method", radiosity_method_words())) radiosity.method = *method;
@@ -133,6 +133,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   load_gather(*table, radiosity);
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
+  if (const auto share = table->number("least_share", limits::least_share)) radiosity.least_share = *share;
   if (const auto samples = table->integer("light_samples", limits::light_samples))
     radiosity.light_samples = static_cast<int>(*samples);
 }

@@ -18,6 +18,7 @@ std::vector<std::string> radiosity_method_words() {
   std::vector<std::string> words;
   for (const RadiosityWords& row : radiosity_words())
     words.emplace_back(row.method);
+  words.insert(words.begin(), "auto");
   words.insert(words.begin() + 1, "none");
   return words;
 }

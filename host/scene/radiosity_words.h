@@ -11,10 +11,10 @@ struct RadiosityWords {
   std::vector<const char*> keys; ///< of [radiosity] that this method alone, or with others, reads
 };
 
-/// A method a row, the default first. "none", which exchanges no light, is not among them.
+/// A method a row. "auto", which chooses one, and "none", which exchanges no light, are not among them.
 const std::vector<RadiosityWords>& radiosity_words();
 
-/// What `radiosity.method` may be: "none" after the default.
+/// What `radiosity.method` may be, the default first.
 std::vector<std::string> radiosity_method_words();
 
 /// Every key that some method reads, once.

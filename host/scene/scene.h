@@ -155,7 +155,8 @@ struct LightSettings {
 };
 
 struct RadiositySettings {
-  std::string method = "fmm"; ///< "none": direct light only
+  std::string method = "auto"; ///< chosen from the scene (host/radiosity/plan.h); "none": direct light only
+  double least_share = 1e-3;   ///< of the direct light that is reflected: less light between surfaces is not solved for
   int order = 3;
   int vmap_samples = 8;               ///< segments a pair of clusters
   int point_samples = 128;            ///< LinkOptions::point_samples (octree/vmap/make_links.h)

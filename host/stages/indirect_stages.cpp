@@ -1,6 +1,7 @@
 #include "host/stages/indirect_stages.h"
 #include "host/cloud/normal_field.h"
 #include "host/error.h"
+#include "host/radiosity/plan.h"
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
 #include <algorithm>
@@ -109,7 +110,7 @@ Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light
 }
 
 void require_possible_radiosity(const Scene& scene) {
-  if (scene.radiosity.place && radiosity_method_of(scene) == nullptr && direct_light_by_radiosity(scene))
+  if (scene.radiosity.place && scene.radiosity.method == "none" && direct_light_by_radiosity(scene))
     throw Error(ErrorKind::input,
                 scene.radiosity.place->text() +
                     ": [radiosity] direct_light = \"radiosity\" wants a method that exchanges light, but method is "
@@ -136,7 +137,7 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
 
 std::string reason_against_radiosity(const IndirectRequest& request) {
   if (request.by_paths) return "the path tracer makes the picture";
-  if (radiosity_method_of(request.scene) == nullptr) return "radiosity.method = \"none\": direct light only";
+  if (request.scene.radiosity.method == "none") return "radiosity.method = \"none\": direct light only";
   if (!request.lighting.has_light()) return "the scene has no light and no emission";
   if (!has_reflectors(request.scene, request.points)) return "nothing in the scene is diffuse with an albedo above 0";
   return {};
@@ -145,10 +146,15 @@ std::string reason_against_radiosity(const IndirectRequest& request) {
 namespace {
 
 RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
-                      StageLog& stages) {
+                      std::optional<RadiosityMap> clusters, LinkEstimate expected, StageLog& stages) {
   stages.start("vmap");
   StageWatch watch(session);
-  RadiosityMap map = map_visibility(session, exchange, request.scene.radiosity, watch.report());
+  const RadiositySettings& settings = request.scene.radiosity;
+  if (!clusters) {
+    clusters = cluster_points(session, exchange, settings);
+    expected = estimate_visibility(session, exchange, settings, *clusters);
+  }
+  RadiosityMap map = find_visibility(session, exchange, settings, std::move(*clusters), expected, watch.report());
   if (map.kept) log_info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
   return map;
@@ -167,22 +173,66 @@ ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& re
   return {pools, request.variant, request.points, exchanging, request.frame.side, request.scene.render.seed};
 }
 
-/// What enters first: lights, what shines, and photons by way of specular surfaces.
-RadiosityField run_exchange(Session& session, const RadiosityMethod& method, std::optional<RadiosityMap> map,
-                            const ExchangeScene& exchange, const IndirectRequest& request, IndirectLight& light,
-                            StageLog& stages) {
-  stages.start(method.name);
+/// Whether direct light has to be passed on by surfaces at all: not where the light between them cannot matter.
+bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, const IndirectLight& light) {
+  const double least = request.scene.radiosity.least_share;
+  // What mirrors throw, and what shines among the points, is not in the bound.
+  if (least == 0.0 || request.lighting.has_specular() || direct_light_by_radiosity(request.scene)) return true;
+  double albedo = 0.0;
+  std::vector<double> reflected;
+  for (std::size_t k = 0; k < clusters.place.size(); ++k)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double rho = clusters.tree.points[k].colour[c];
+      albedo = std::max(albedo, rho);
+      reflected.push_back(rho * light.direct[3 * clusters.place[k] + c]);
+    }
+  return bound_of_exchange(clusters.tree, reflected, albedo, least) > least;
+}
+
+/// The stage `plan`: which method suits the scene. `clusters` are those of the points that exchange light.
+MethodPlan run_plan(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
+                    std::optional<RadiosityMap>& clusters, IndirectLight& light, StageLog& stages) {
+  stages.start("plan");
   StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
   light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
+  clusters = cluster_points(session, exchange, settings);
+  MethodPlan plan{nullptr, {}, {}};
+  if (!may_matter(request, *clusters, light))
+    plan.reason = fmt::format("surfaces send each other less than {:g} of the light, radiosity.least_share",
+                              settings.least_share);
+  else
+    plan = plan_method(session, exchange, settings, *clusters, emitters_exchange && !request.lighting.emitters.empty());
+  stages.finish(request.points.size, "points");
+  log_info("radiosity: {}: {}", plan.method != nullptr ? fmt::format("method \"{}\"", plan.method->name) : "not solved",
+           plan.reason);
+  return plan;
+}
+
+/// What enters first: lights, what shines, and photons by way of specular surfaces.
+RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, const ExchangeScene& exchange,
+                            const IndirectRequest& request, IndirectLight& light, StageLog& stages) {
+  stages.start(light.method->name);
+  StageWatch watch(session);
+  const RadiositySettings& settings = request.scene.radiosity;
+  const bool emitters_exchange = direct_light_by_radiosity(request.scene);
+  if (light.direct.empty()) light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
   std::vector<float> entering = light.direct;
   for (std::size_t i = 0; i < request.caustic.size; ++i)
     entering[i] += request.caustic[i];
-  light.prepared = method.prepare(session, exchange, settings, std::move(map), watch.report());
+  light.prepared = light.method->prepare(session, exchange, settings, std::move(map), watch.report());
+  if (request.after_pass)
+    light.prepared->after_pass = [&](unsigned pass, const std::vector<float>& irradiance) {
+      IndirectLight so_far;
+      so_far.direct = light.direct;
+      so_far.from_surfaces = irradiance;
+      request.after_pass(pass, so_far);
+    };
   RadiosityField field = light.prepared->solve({entering, emitted}, settings.tolerance, watch.report());
+  light.prepared->after_pass = {};
   stages.finish(request.points.size, "points");
   return field;
 }
@@ -222,30 +272,42 @@ std::vector<float> sky_of_points(Session& session, const DevicePools& pools, con
   return share;
 }
 
-const RadiosityMethod* radiosity_method_of(const Scene& scene) {
-  return radiosity_method(scene.radiosity.method);
-}
-
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages) {
   IndirectLight light;
   const RadiositySettings& settings = request.scene.radiosity;
-  const RadiosityMethod* method = radiosity_method_of(request.scene);
-  if (const std::string reason = reason_against_radiosity(request); !reason.empty()) {
-    if (settings.place && method != nullptr)
-      log_warning("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
+  light.method = radiosity_method(settings.method);
+  const auto skip = [&](const std::string& reason) {
     stages.skip("vmap", reason);
-    stages.skip(method != nullptr ? method->name : radiosity_methods().front()->name, reason);
+    stages.skip(light.method != nullptr ? light.method->name : radiosity_methods().front()->name, reason);
+  };
+  if (const std::string reason = reason_against_radiosity(request); !reason.empty()) {
+    if (settings.place && settings.method != "none")
+      log_warning("{}: [radiosity] has no effect: {}", settings.place->text(), reason);
+    skip(reason);
     return light;
   }
   const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
   const ExchangeScene exchange = exchange_scene(pools, request, exchanging);
-  std::optional<RadiosityMap> map;
-  if (method->without_vmap != nullptr)
-    stages.skip("vmap", method->without_vmap);
+  std::optional<RadiosityMap> clusters, map;
+  LinkEstimate expected;
+  std::string without_vmap;
+  if (settings.method == "auto") {
+    const MethodPlan plan = run_plan(session, exchange, request, clusters, light, stages);
+    light.method = plan.method;
+    expected = plan.vmap;
+    without_vmap = plan.reason;
+    if (plan.method == nullptr) {
+      skip(plan.reason);
+      return light;
+    }
+  } else if (light.method->without_vmap != nullptr)
+    without_vmap = light.method->without_vmap;
+  if (light.method->without_vmap != nullptr)
+    stages.skip("vmap", without_vmap);
   else
-    map = run_vmap(session, exchange, request, stages);
-  RadiosityField field = run_exchange(session, *method, std::move(map), exchange, request, light, stages);
+    map = run_vmap(session, exchange, request, std::move(clusters), expected, stages);
+  RadiosityField field = run_exchange(session, std::move(map), exchange, request, light, stages);
   light.rays = light.prepared->rays();
   light.statistics = light.prepared->statistics();
   light.from_surfaces = std::move(field.irradiance);
@@ -256,7 +318,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
 
 std::vector<float> add_exchange(Session& session, const IndirectRequest& request, View<float> entering, double share,
                                 IndirectLight& light, StageLog& stages) {
-  const RadiosityMethod& method = *radiosity_method_of(request.scene);
+  const RadiosityMethod& method = *light.method;
   if (!method.is_linear)
     throw std::logic_error("radiosity: light added to what a method that is not linear has solved");
   stages.start(method.name);

@@ -16,6 +16,7 @@ struct IndirectLight {
   Solution solution;
   std::uint64_t rays = 0; ///< that decided which points see each other
   std::vector<MethodStatistic> statistics;
+  const RadiosityMethod* method = nullptr;     ///< that solved it, or would
   std::unique_ptr<PreparedRadiosity> prepared; ///< by which it was solved, for light that enters besides
 };
 
@@ -29,13 +30,13 @@ struct IndirectRequest {
   bool by_paths = false; ///< a path tracer makes the picture
   View<float> caustic{}; ///< [points x 3] as IndirectLight: irradiance that photons bring and that surfaces pass
                          ///< on; empty: none
+  /// Called after each pass of a method that has passes, with the light so far; may be empty.
+  std::function<void(unsigned pass, const IndirectLight& so_far)> after_pass{};
 };
 
-/// The method that the scene asks for; nullptr: light is not exchanged.
-const RadiosityMethod* radiosity_method_of(const Scene& scene);
-
-/// Runs `vmap` and the stage of the scene's method, which has the method's name, where the scene needs them, and says
-/// of each stage that does not run why. Throws Error(interrupted) when the run (host/run.h) is to stop.
+/// Runs `plan` where the scene leaves the method open, `vmap`, and the stage of the method, which has the method's
+/// name, where the scene needs them, and says of each stage that does not run why. Throws Error(interrupted) when the
+/// run (host/run.h) is to stop.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 

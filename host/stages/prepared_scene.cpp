@@ -64,6 +64,8 @@ void apply_quality(const std::string& quality, Scene& scene, bool samples_given)
   const bool draft = quality == "draft";
   if (!samples_given)
     scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
+  int& directions = scene.radiosity.directions;
+  directions = draft ? (directions + 1) / 2 : std::min(2 * directions, static_cast<int>(limits::directions.high));
   double& epsilon = scene.radiosity.epsilon;
   epsilon = draft ? std::max(epsilon, std::min(4.0 * epsilon, limits::coarsest_draft_epsilon)) : 0.5 * epsilon;
 }

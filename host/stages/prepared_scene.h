@@ -28,7 +28,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
 
 /// --quality, a picture's noise and the exchange's error together: "draft" is a quarter of the scene's samples a pixel,
 /// unless `samples_given` with the command, and four times its radiosity.epsilon, but no more than
-/// limits::coarsest_draft_epsilon; "high" four times and half.
+/// limits::coarsest_draft_epsilon, and half of radiosity.directions; "high" four times, half, and twice.
 void apply_quality(const std::string& quality, Scene& scene, bool samples_given = false);
 
 /// --quality of a lit cloud, which shows the direct light of its points: besides, radiosity.light_samples is 16, 64 or

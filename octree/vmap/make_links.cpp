@@ -5,6 +5,7 @@
 #include "octree/vmap/point_shares.h"
 #include "octree/vmap/shafts.h"
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -69,12 +70,30 @@ std::vector<T> joined(const std::vector<Part>& parts, const Get& get) {
   return all;
 }
 
+/// A hash of 32 bits (Wellons, lowbias32).
+std::uint32_t mixed_bits(std::uint32_t x) {
+  x = (x ^ x >> 16) * 0x7feb352du;
+  x = (x ^ x >> 15) * 0x846ca68bu;
+  return x ^ x >> 16;
+}
+
 class LinkMaker {
 public:
   LinkMaker(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options, View<Splat> obstacles)
       : tree_(tree), oracle_(oracle), options_(options), samples_(tree, options.seed, options.thesis) {
     // Discs of a bent surface fill the shafts of its own clusters: 1.6 times the rays of a scan, for nothing found.
     if (!options.thesis && std::any_of(obstacles.begin(), obstacles.end(), is_flat)) shafts_.emplace(obstacles);
+  }
+
+  /// run() of a sample: of each wave at most so many pairs.
+  LinkEstimate estimate(std::size_t pairs_a_wave) {
+    options_.most_rays = 0;
+    sampled_ = pairs_a_wave;
+    run();
+    const double wanted = static_cast<double>(options_.point_samples) * static_cast<double>(tree_.points.size());
+    if (options_.point_samples > 0 && !options_.thesis)
+      estimate_.rays += near_pairs_ + asks_alone_ / std::clamp(std::ceil(asks_alone_ / wanted), 1.0, 4.0);
+    return estimate_;
   }
 
   VMap run() {
@@ -91,6 +110,7 @@ public:
         treat({wave.data() + begin, std::min(pairs_at_once, wave.size() - begin)}, next);
       rays_a_pair_ = static_cast<double>(map_.statistics.rays - rays) / static_cast<double>(wave.size());
       wave = std::move(next);
+      if (sampled_ > 0 && wave.size() > sampled_) thin(wave);
     }
     return std::move(map_);
   }
@@ -101,6 +121,35 @@ private:
     return options_.most_rays > 0 &&
            static_cast<double>(map_.statistics.rays) + rays_a_pair_ * static_cast<double>(pairs) >
                static_cast<double>(options_.most_rays);
+  }
+
+  /// Keeps each pair with the same probability, so that about sampled_ are left, which stand for all.
+  void thin(std::vector<Pair>& wave) {
+    const double share = static_cast<double>(sampled_) / static_cast<double>(wave.size());
+    const auto limit = static_cast<std::uint32_t>(share * 4294967295.0);
+    std::vector<Pair> kept;
+    for (const Pair& pair : wave)
+      if (mixed_bits(pair.a * 0x9e3779b9u ^ mixed_bits(pair.b + options_.seed)) <= limit) kept.push_back(pair);
+    if (kept.empty()) kept.push_back(wave.front());
+    weight_ *= static_cast<double>(wave.size()) / static_cast<double>(kept.size());
+    wave = std::move(kept);
+  }
+
+  /// Adds what a part of a wave asked and made, times what each of its pairs stands for.
+  void add_to_estimate(std::size_t pairs, std::size_t rays, const std::vector<Link>& links) {
+    estimate_.pairs += weight_ * static_cast<double>(pairs);
+    estimate_.rays += weight_ * static_cast<double>(rays);
+    estimate_.links += weight_ * static_cast<double>(links.size());
+    estimate_.bytes += weight_ * static_cast<double>(links.size() * sizeof(Link));
+    for (const Link& link : links) {
+      if (link.open || link.a == link.b) continue;
+      const double a = tree_.nodes[link.a].count, b = tree_.nodes[link.b].count;
+      estimate_.bytes += weight_ * (a + b);
+      if (link.kind == LinkKind::near_)
+        near_pairs_ += 0.5 * weight_ * a * b; // of which half face each other
+      else
+        asks_alone_ += weight_ * (a + b);
+    }
   }
 
   bool is_leaf(std::uint32_t n) const { return tree_.nodes[n].first_child == 0; }
@@ -146,7 +195,10 @@ private:
         outputs, [](const Output& o) -> const auto& { return o.links; });
     for (const Link& link : links)
       ++(link.kind == LinkKind::far ? s.far : link.kind == LinkKind::mid ? s.mid : s.near_);
-    map_.links.insert(map_.links.end(), links.begin(), links.end());
+    if (sampled_ > 0)
+      add_to_estimate(pairs.size, rays, links);
+    else
+      map_.links.insert(map_.links.end(), links.begin(), links.end());
     const auto more = joined<Pair>(
         outputs, [](const Output& o) -> const auto& { return o.next; });
     next.insert(next.end(), more.begin(), more.end());
@@ -275,19 +327,37 @@ private:
   LinkOptions options_;
   PairSamples samples_;
   std::optional<Shafts> shafts_;
-  bool coarse_ = false;    ///< most_rays is reached: from now on no pair that is far apart is divided
-  double rays_a_pair_ = 0; ///< that the wave before asked
+  bool coarse_ = false;     ///< most_rays is reached: from now on no pair that is far apart is divided
+  double rays_a_pair_ = 0;  ///< that the wave before asked
+  std::size_t sampled_ = 0; ///< pairs of a wave, at most; 0: all
+  double weight_ = 1.0;     ///< pairs that each of the wave stands for
+  LinkEstimate estimate_;
+  double asks_alone_ = 0.0, near_pairs_ = 0.0; ///< segments of point_shares: a point each, a pair of points each
   VMap map_;
 };
 
 } // namespace
 
-VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options, View<Splat> obstacles) {
+namespace {
+
+void check(const LinkOptions& options) {
   if (options.samples < 1 || options.samples > 1024)
     throw std::invalid_argument("vmap: samples must be from 1 to 1024");
   if (!(options.epsilon >= 0.0f)) throw std::invalid_argument("vmap: epsilon must not be negative");
   if (!(options.separation > 0.0f && options.separation <= 1.0f))
     throw std::invalid_argument("vmap: separation must be above 0 and at most 1");
+}
+
+} // namespace
+
+LinkEstimate estimate_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options,
+                            View<Splat> obstacles, std::size_t pairs_a_wave) {
+  check(options);
+  return LinkMaker(tree, oracle, options, obstacles).estimate(std::max<std::size_t>(1, pairs_a_wave));
+}
+
+VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options, View<Splat> obstacles) {
+  check(options);
   VMap map = LinkMaker(tree, oracle, options, obstacles).run();
   if (options.point_samples > 0 && !options.thesis)
     map.point_shares = make_point_shares(tree, map.links, oracle, {options.point_samples, options.seed, options.batch},

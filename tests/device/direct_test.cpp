@@ -136,8 +136,9 @@ TEST_CASE("direct on the device: what does not fit is refused with what is wante
     FAIL("it took less than a bit a pair");
   } catch (const Error& error) {
     CHECK(error.kind() == ErrorKind::memory);
-    CHECK_THAT(error.what(), Catch::Contains(std::to_string(scene.splats.size()) + " points takes a bit a pair, 1 MiB") &&
-                                 Catch::Contains("1 MiB left") && Catch::Contains("\"fmm\""));
+    CHECK_THAT(error.what(),
+               Catch::Contains(std::to_string(scene.splats.size()) + " points takes a bit a pair, 1 MiB") &&
+                   Catch::Contains("1 MiB left") && Catch::Contains("\"fmm\""));
   }
   DeviceDirect none(session(), scene.pools, scene.variant, View<Splat>(), {});
   std::vector<double> h{1.0};

@@ -9,7 +9,7 @@
  * are summed in blocks of DIRECT_SOURCES, and blocks one by one: the same bits for any division at their borders.
  * NDRange: 1-D, a work-item a block of FMM_LANES receivers, padded: row first_row + i of `rows`.
  *   seen     byte j - first_sender of a row, `row_bytes` long, is the block as sender j sees it, the lowest bit its first
- *            point (kernels/visibility/pairs.cl, kernels/radiosity/gather/senders_visible.cl); the buffer begins with row
+ *            point (kernels/visibility/pairs.cl, kernels/visibility/senders_visible.cl); the buffer begins with row
  *            held_from; bits of points past the last are zero
  *   points   the receivers, as receivers_at reads them, planes `stride` apart
  *   senders  their planes, sender_stride apart; `flux` too */

@@ -1,6 +1,6 @@
 /* Irradiance of the points from the senders that they picked in a pass (method.md section 8). */
 #include "radiosity/fmm/exchange.cl"
-#include "radiosity/gather/pick.cl"
+#include "lib/window_pick.cl"
 
 /* irradiance[colour * stride + i] = sum over windows w of v count(w) F B of the sender that i has picked of w: unbiased, as
  * each of the window's is as likely.

@@ -21,8 +21,8 @@ TEST_CASE("every radiosity method is a word of the scene file, a folder of kerne
   for (const RadiosityWords& row : radiosity_words())
     words.emplace_back(row.method);
   CHECK(words == methods);
-  CHECK(RadiositySettings().method == methods.front());
-  for (const char* none : {"none", "", "progressive"})
+  CHECK(RadiositySettings().method == radiosity_method_words().front());
+  for (const char* none : {"auto", "none", "", "progressive"})
     CHECK(radiosity_method(none) == nullptr);
 }
 

@@ -300,7 +300,7 @@ TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
   CHECK(scene.camera.place.text() == "(default)");
   CHECK(scene.camera.fov_deg == 40);
   CHECK(scene.environment == Vector3d(0, 0, 0));
-  CHECK(scene.radiosity.method == "fmm");
+  CHECK(scene.radiosity.method == "auto");
   CHECK(scene.radiosity.epsilon == 5e-3);
   CHECK_FALSE(scene.radiosity.vmap_rays.has_value());
   CHECK(scene.radiosity.vmap == "fractions");

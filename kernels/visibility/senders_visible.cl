@@ -3,7 +3,7 @@
  *   else         the receivers ask for all senders of a table */
 #include "visibility/sight.cl"
 #ifdef MONTE_CARLO
-#include "radiosity/gather/pick.cl"
+#include "lib/window_pick.cl"
 #define SENDER_PARAMS const __global uint2 *restrict windows, const __global uint *restrict members, uint pass, uint seed
 #define SENDER(receiver, s) (points + picked_sender(members, windows[s], receiver, s, pass, seed))
 #else

@@ -1,0 +1,118 @@
+#include "host/radiosity/plan.h"
+#include "fmm/operators/point_pair.h"
+#include "octree/vmap/facing.h"
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace pointgi {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+std::string millions(double rays) {
+  char text[40];
+  std::snprintf(text, sizeof text, rays < 1e7 ? "%.1f million" : "%.0f million", 1e-6 * rays);
+  return text;
+}
+
+/// Sums up to `enough`, over pairs of clusters: power that one sends times what of it the other may get.
+class ExchangeBound {
+public:
+  ExchangeBound(const ClusterTree& tree, View<double> radiosity) : tree_(tree), flux_(tree.nodes.size()) {
+    for (std::size_t node = 0; node < tree.nodes.size(); ++node) {
+      const Cluster& c = tree.nodes[node];
+      for (std::uint32_t i = c.first_point; i < c.first_point + c.count; ++i)
+        flux_[node] += flux_of(i, radiosity);
+    }
+    for (std::size_t i = 0; i < tree.points.size(); ++i)
+      point_flux_.push_back(flux_of(i, radiosity));
+  }
+
+  double sent() const { return flux_.empty() ? 0.0 : flux_[0]; }
+
+  double received(double enough) {
+    std::vector<std::array<std::uint32_t, 2>> waiting{{0, 0}};
+    while (!waiting.empty() && received_ <= enough) {
+      const auto [ka, kb] = waiting.back();
+      waiting.pop_back();
+      take(ka, kb, waiting);
+    }
+    return received_;
+  }
+
+private:
+  double flux_of(std::size_t i, View<double> radiosity) const {
+    return (radiosity[3 * i] + radiosity[3 * i + 1] + radiosity[3 * i + 2]) * double{tree_.points[i].area};
+  }
+
+  void take(std::uint32_t ka, std::uint32_t kb, std::vector<std::array<std::uint32_t, 2>>& waiting) {
+    const Cluster &a = tree_.nodes[ka], &b = tree_.nodes[kb];
+    if (flux_[ka] == 0.0 && flux_[kb] == 0.0) return;
+    if (ka != kb && (facing(a, b) == Facing::none || facing(b, a) == Facing::none)) return;
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k)
+      square += (double{b.centre[k]} - a.centre[k]) * (double{b.centre[k]} - a.centre[k]);
+    const double nearest = std::sqrt(square) - a.radius - b.radius;
+    if (ka != kb && nearest > 2.0 * (double{a.radius} + b.radius)) {
+      received_ += (flux_[ka] * double{b.area} + flux_[kb] * double{a.area}) / (pi * nearest * nearest);
+      return;
+    }
+    if (a.child_count == 0 && b.child_count == 0) {
+      take_points(a, b, ka == kb);
+      return;
+    }
+    const bool first = b.child_count == 0 || (a.child_count != 0 && a.radius >= b.radius);
+    const Cluster& parent = first ? a : b;
+    for (std::uint32_t i = parent.first_child; i < parent.first_child + parent.child_count; ++i)
+      if (ka == kb)
+        for (std::uint32_t j = i; j < parent.first_child + parent.child_count; ++j)
+          waiting.push_back({i, j});
+      else
+        waiting.push_back({i, first ? kb : ka});
+  }
+
+  void take_points(const Cluster& a, const Cluster& b, bool same) {
+    for (std::uint32_t i = a.first_point; i < a.first_point + a.count; ++i)
+      for (std::uint32_t j = same ? i + 1 : b.first_point; j < b.first_point + b.count; ++j) {
+        const ExchangePoint p(tree_.points[i]), q(tree_.points[j]);
+        received_ += point_flux_[j] / q.area * point_exchange(p, q) * p.area +
+                     point_flux_[i] / p.area * point_exchange(q, p) * q.area;
+      }
+  }
+
+  const ClusterTree& tree_;
+  std::vector<double> flux_, point_flux_; ///< of all colours together
+  double received_ = 0.0;
+};
+
+} // namespace
+
+double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double albedo, double enough) {
+  if (tree.points.empty()) return 0.0;
+  ExchangeBound bound(tree, radiosity);
+  if (!(bound.sent() > 0.0)) return 0.0;
+  // Of what is received once a part is sent again: at most the albedo of it, and so on.
+  const double again = albedo / std::max(1e-3, 1.0 - albedo);
+  return bound.received(enough * bound.sent() / again) * again / bound.sent();
+}
+
+MethodPlan plan_method(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                       const RadiosityMap& clusters, bool emitters_exchange) {
+  MethodPlan plan{radiosity_method("fmm"), {}, estimate_visibility(session, scene, settings, clusters)};
+  const double directions = static_cast<double>(clusters.place.size()) * settings.directions;
+  const std::string asks = "the V-map would ask about " + millions(plan.vmap.rays) + " rays, " +
+                           std::to_string(settings.directions) + " directions a point " + millions(directions);
+  if (plan.vmap.rays <= dearer_factor * directions) {
+    plan.reason = asks;
+  } else if (emitters_exchange) {
+    plan.reason = asks + "; lamps that take part in the exchange are too small for directions";
+  } else {
+    plan.method = radiosity_method("directions");
+    plan.reason = asks;
+  }
+  return plan;
+}
+
+} // namespace pointgi

@@ -1,0 +1,29 @@
+#pragma once
+/// radiosity.method = "auto": which method suits a scene, known before its visibility is asked for.
+#include "host/radiosity/method.h"
+
+namespace pointgi {
+
+struct MethodPlan {
+  const RadiosityMethod* method; ///< chosen; nullptr: the light between surfaces is too little to matter
+  std::string reason;            ///< in a sentence, for the log and --stats
+  LinkEstimate vmap;             ///< what the V-map would ask
+};
+
+/// Rays of method "directions" that a ray of the V-map may cost before "directions" is taken: the V-map's are cheaper,
+/// as any hit ends them; what the fast multipole method does with them takes about as much as is saved.
+/// bench_methods measures both (docs/method/methods.md).
+constexpr double dearer_factor = 1.0;
+
+/// Compares what the V-map would ask, from a sample of its questions, with points x settings.directions. Depends on the
+/// scene and the settings alone, not on how fast a device is or what is kept from earlier runs. `emitters_exchange`:
+/// lamps are among the points that send, which directions would meet too seldom.
+MethodPlan plan_method(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
+                       const RadiosityMap& clusters, bool emitters_exchange);
+
+/// Upper bound of the light that surfaces send each other, as a share of `power`, what they reflect of the direct light
+/// [W/m², points x 3 in the tree's order, radiosity], where nothing stood between any two. `albedo`: the largest of all
+/// points. Stops where the bound passes `enough`, and returns what it found until then.
+double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double albedo, double enough);
+
+} // namespace pointgi
