@@ -3,6 +3,8 @@
 #include "host/run.h"
 #include "host/stages/lit_file.h"
 #include "host/stages/view_warnings.h"
+#include <filesystem>
+#include <fmt/format.h>
 
 namespace pointgi::api {
 
@@ -44,6 +46,17 @@ LitCloud Light::Parts::lit_cloud(const LitFileOptions& with) {
   return lit;
 }
 
+namespace {
+
+/// "LIT.pass-001.ply" of "LIT.ply".
+std::string name_of_pass(const std::string& file, unsigned pass) {
+  const std::filesystem::path path(file);
+  return (path.parent_path() / fmt::format("{}.pass-{:03}{}", path.stem().string(), pass, path.extension().string()))
+      .string();
+}
+
+} // namespace
+
 Light::Light(const Prepared& prepared, const LightOptions& options, const RunControl& run) : parts_(new Parts) {
   const RunScope scope(run);
   parts_->prepared = prepared.parts();
@@ -56,7 +69,13 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
   if (options.photons || options.path_tracing) {
     parts_->light = run_light_stages(session, from.ready.on_device, parts_->request(), stages);
   } else {
-    indirect = run_indirect_stages(session, from.ready.on_device, parts_->request(), stages);
+    IndirectRequest request = parts_->request();
+    if (!options.pass_file.empty())
+      request.after_pass = [&](unsigned pass, const IndirectLight& so_far) {
+        const LitCloud lit = pointgi::lit_cloud(parts_->request(), so_far, options.pass_content.exposure);
+        write_lit_ply(name_of_pass(options.pass_file, pass), from.scene, from.ready, lit);
+      };
+    indirect = run_indirect_stages(session, from.ready.on_device, request, stages);
     indirect.prepared.reset();
   }
   if (!indirect.from_surfaces.empty()) {

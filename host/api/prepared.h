@@ -42,18 +42,22 @@ private:
   std::shared_ptr<Parts> parts_;
 };
 
+/// What a lit cloud's file shows besides the points.
+struct LitFileOptions {
+  std::optional<double> exposure = 0.0; ///< brightens the colours, in stops; absent: chosen from the points
+  bool sky = false; ///< scalar_sky: as of Light::sky(); a scene without any light then has nothing else
+};
+
 struct LightOptions {
   /// Whether photons bring the light that mirrors and glass pass on. They change pictures, and radiosities where the
   /// scene says caustics.feedback or caustics.indirect.
   bool photons = true;
   /// Nothing is solved: films are path traced, slowly and without bias.
   bool path_tracing = false;
-};
-
-/// What a lit cloud's file shows besides the points.
-struct LitFileOptions {
-  std::optional<double> exposure = 0.0; ///< brightens the colours, in stops; absent: chosen from the points
-  bool sky = false; ///< scalar_sky: as of Light::sky(); a scene without any light then has nothing else
+  /// "LIT.ply": where radiosity.method has passes ("gather"), the lit cloud as it is after each is written to
+  /// LIT.pass-001.ply and so on, with what `pass_content` says. Empty: none is. Without photons only.
+  std::string pass_file = {};
+  LitFileOptions pass_content = {};
 };
 
 /// The solved light of a prepared scene. It does not depend on a camera: any number of films may be made by it.

@@ -17,6 +17,16 @@ bool is_las(const BakeOptions& options) {
   return has_extension(options.output, ".las");
 }
 
+void require_passes(const BakeOptions& options, const Scene& scene) {
+  const RadiosityMethod* method = radiosity_method(scene.radiosity.method);
+  if (method == nullptr || !method->has_passes)
+    throw Error(ErrorKind::usage, "--passes: radiosity.method = \"" + scene.radiosity.method +
+                                      "\" has no passes to write; add --set radiosity.method=gather");
+  if (is_las(options))
+    throw Error(ErrorKind::usage,
+                "--passes: the clouds of the passes are PLY files; choose an output that ends in .ply");
+}
+
 /// Everything that can be refused is refused here, before the work.
 api::Scene checked_scene(const BakeOptions& options) {
   if (!has_extension(options.output, ".ply") && !is_las(options))
@@ -27,6 +37,7 @@ api::Scene checked_scene(const BakeOptions& options) {
   checked.set_bake_quality(options.quality);
   const Scene scene = checked.parts()->description();
   require_possible_radiosity(scene);
+  if (options.passes) require_passes(options, scene);
   if (is_las(options) && !can_write_las(scene))
     throw Error(ErrorKind::output, options.output +
                                        ": only what was one LAS or LAZ file, and nothing else, is written as .las; "
@@ -50,13 +61,16 @@ ExitCode run_bake(const BakeOptions& options) {
   const bool specular = prepared.parts()->ready.lighting.has_specular();
   if (description.caustics.place && specular)
     spdlog::warn("{}: [caustics] has no effect: a lit cloud holds no caustics", description.caustics.place->text());
-  const api::Light light(prepared, {false, false}, run.control());
+  api::LitFileOptions content{description.render.exposure, options.sky};
+  if (description.render.auto_exposure) content.exposure.reset();
+  api::LightOptions solving{false, false};
+  if (options.passes) solving.pass_file = options.output;
+  solving.pass_content = content;
+  const api::Light light(prepared, solving, run.control());
   stages.skip("photon", specular ? "a lit cloud holds no caustics" : "no specular material");
   stages.skip("render", "a lit cloud is no picture: it has no camera");
   if (options.sky) light.sky(run.control());
   stages.start("bake");
-  api::LitFileOptions content{description.render.exposure, options.sky};
-  if (description.render.auto_exposure) content.exposure.reset();
   if (is_las(options))
     light.write_las(options.output, content, run.control());
   else

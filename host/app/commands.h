@@ -34,7 +34,8 @@ struct RenderOptions : LightOptions {
 };
 
 struct BakeOptions : LightOptions {
-  bool sky = false; ///< the share of the sky that each point sees, too
+  bool sky = false;    ///< the share of the sky that each point sees, too
+  bool passes = false; ///< the lit cloud after each pass, too
 };
 
 struct ProfileOptions {

@@ -159,6 +159,10 @@ int run(int argc, char** argv) {
                          "add scalar_sky, the share of the sky that each point sees (ambient occlusion); of a scene "
                          "without light nothing else is computed");
 
+  bake_command->add_flag("--passes", bake.passes,
+                         "write the lit cloud as it is after each pass of radiosity.method = \"gather\", too: "
+                         "LIT.pass-001.ply and so on");
+
   ProfileOptions profile;
   CLI::App* profile_command =
       app.add_subcommand("profile", "time every kernel variant on a scene; render uses the best");

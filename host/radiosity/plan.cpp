@@ -50,12 +50,14 @@ private:
   void take(std::uint32_t ka, std::uint32_t kb, std::vector<std::array<std::uint32_t, 2>>& waiting) {
     const Cluster &a = tree_.nodes[ka], &b = tree_.nodes[kb];
     if (flux_[ka] == 0.0 && flux_[kb] == 0.0) return;
-    if (ka != kb && (facing(a, b) == Facing::none || facing(b, a) == Facing::none)) return;
+    const Facing of_a = facing(a, b), of_b = facing(b, a);
+    if (ka != kb && (of_a == Facing::none || of_b == Facing::none)) return;
     double square = 0.0;
     for (int k = 0; k < 3; ++k)
       square += (double{b.centre[k]} - a.centre[k]) * (double{b.centre[k]} - a.centre[k]);
     const double nearest = std::sqrt(square) - a.radius - b.radius;
-    if (ka != kb && nearest > 2.0 * (double{a.radius} + b.radius)) {
+    // Where bounds do not know whether any two points face each other, they are asked: those of a ball do not.
+    if (of_a == Facing::all && of_b == Facing::all && nearest > double{a.radius} + b.radius) {
       received_ += (flux_[ka] * double{b.area} + flux_[kb] * double{a.area}) / (pi * nearest * nearest);
       return;
     }

@@ -178,14 +178,16 @@ bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, co
   const double least = request.scene.radiosity.least_share;
   // What mirrors throw, and what shines among the points, is not in the bound.
   if (least == 0.0 || request.lighting.has_specular() || direct_light_by_radiosity(request.scene)) return true;
-  double albedo = 0.0;
+  double albedo = 0.0, brightest = 0.0;
   std::vector<double> reflected;
   for (std::size_t k = 0; k < clusters.place.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c) {
       const double rho = clusters.tree.points[k].colour[c];
       albedo = std::max(albedo, rho);
       reflected.push_back(rho * light.direct[3 * clusters.place[k] + c]);
+      brightest = std::max(brightest, reflected.back());
     }
+  if (!(brightest > 0.0)) return true; // who solves for no light says what is wrong
   return bound_of_exchange(clusters.tree, reflected, albedo, least) > least;
 }
 

@@ -12,7 +12,8 @@ using Catch::Contains;
 TEST_CASE("bake writes a lit cloud that the program reads again, names it, and says what ran") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("lit.ply");
-  const Run run = run_program("bake " + scene + " -o " + out + " --stats " + folder.file("s.json"));
+  const Run run = run_program("bake " + scene + " -o " + out + " --stats " + folder.file("s.json") +
+                              " --set radiosity.method=fmm"); // auto leaves out what a ball sends itself: nothing
   REQUIRE(run.code == 0);
   CHECK(run.out == out + "\n");
   CHECK_THAT(contents(out), Contains("format binary_little_endian 1.0") && Contains("property double z\n") &&
@@ -146,4 +147,24 @@ TEST_CASE("bake without light between surfaces: direct light alone, or black, an
   };
   CHECK(brightest(" --set radiosity.method=none") > 0.5f);
   CHECK(brightest(" --set light.0.power_w=[0,0,0]") == 0.0f);
+}
+
+TEST_CASE("bake --passes writes the cloud after each bounce, and the last is the result; other methods have none") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write(
+      "corner.toml", std::string(small_scene()) +
+                         "[[shape]]\ntype = \"quad\"\ncorner = [-2.0, -1.0, -2.0]\nedge_u = [0.0, 0.0, 4.0]\n"
+                         "edge_v = [4.0, 0.0, 0.0]\nspacing = 0.2\nmaterial = \"grey\"\n");
+  const std::string out = folder.file("lit.ply");
+  const Run run = run_program("bake " + scene + " --quiet -o " + out +
+                              " --passes --set radiosity.method=gather --set radiosity.passes=3");
+  CAPTURE(run.err);
+  REQUIRE(run.code == 0);
+  const std::string first = contents(folder.file("lit.pass-001.ply")), last = contents(folder.file("lit.pass-003.ply"));
+  CHECK(last == contents(out));
+  CHECK(first != last);
+  CHECK(!std::filesystem::exists(folder.file("lit.pass-004.ply")));
+  const Run none = run_program("bake " + scene + " -o " + out + " --passes --set radiosity.method=fmm");
+  CHECK(none.code == 2);
+  CHECK_THAT(none.err, Contains("\"fmm\" has no passes") && Contains("radiosity.method=gather"));
 }

@@ -96,7 +96,7 @@ TEST_CASE("light between surfaces is part of a picture unless the scene or the c
     REQUIRE(run.code == 0);
     return json_of(folder.file("s.json"));
   };
-  const auto whole = stats_of(scene, "");
+  const auto whole = stats_of(scene, " --set radiosity.method=fmm");
   CHECK(names_of(whole["stages"], true) ==
         std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "render", "image"});
   CHECK(names_of(whole["stages"], false) == std::vector<std::string>{"normals", "photon"});
@@ -127,7 +127,14 @@ TEST_CASE("light between surfaces is part of a picture unless the scene or the c
   const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
                                                       "property float y\nproperty float z\nend_header\n"
                                                       "0 0 0\n1 0 0\n0 1 0\n");
-  CHECK(reason_of(stats_of(cloud, " --size 16x12")["stages"], "fmm").empty()); // a bare cloud, too
+  CHECK(reason_of(stats_of(cloud, " --size 16x12 --set radiosity.method=fmm")["stages"], "fmm")
+            .empty()); // a bare cloud, too
+  // A ball alone sends itself nothing, which the planner knows before it asks who sees whom.
+  const auto planned = stats_of(scene, "");
+  CHECK(names_of(planned["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "plan", "render", "image"});
+  for (const char* stage : {"vmap", "fmm"})
+    CHECK_THAT(reason_of(planned["stages"], stage), Contains("less than 0.001 of the light, radiosity.least_share"));
 }
 
 TEST_CASE("a mirror adds the stages normals and photon, and the channels of their light") {
@@ -141,7 +148,7 @@ TEST_CASE("a mirror adds the stages normals and photon, and the channels of thei
     return json_of(folder.file("s.json"));
   };
   const auto whole = stats_of(" --set caustics.photons=2000");
-  CHECK(names_of(whole["stages"], true) == std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm",
+  CHECK(names_of(whole["stages"], true) == std::vector<std::string>{"scene", "cloud", "octree", "plan", "vmap", "fmm",
                                                                     "normals", "photon", "photon", "render",
                                                                     "image"}); // sent, then what they bring to points
   CHECK(whole["photons"]["stored"] > 0);

@@ -1,0 +1,382 @@
+/// Every radiosity method and its knobs on the same scenes: seconds, rays, bytes, and how far the radiosity is from
+/// that of the solver of every pair, or where all pairs are too many from that of very many directions. bench_methods
+/// --help
+#include "host/radiosity/direct.h"
+#include "host/radiosity/plan.h"
+#include "host/radiosity/point_irradiance.h"
+#include "host/scene/load_scene.h"
+#include "host/stages/indirect_stages.h"
+#include "host/stages/prepared_scene.h"
+#include "tests/support/cache_folder.h"
+#include "tests/support/exchange.h"
+#include "tests/support/lit_room.h"
+#include "tests/support/temporary_folder.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <map>
+#include <spdlog/spdlog.h>
+
+using namespace pointgi;
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void quiet(const std::string&) {}
+
+/// Points on the device, and the light that enters.
+struct BenchScene {
+  std::string name;
+  DevicePools pools;
+  TraversalVariant variant;
+  std::vector<Splat> points;
+  std::vector<std::uint8_t> exchanges;
+  std::vector<float> direct, emitted; ///< [points x 3]; emitted may be empty
+  double side = 1.0;
+
+  ExchangeScene exchange() const { return {pools, variant, points, exchanges, side, 1}; }
+};
+
+BenchScene room(Session& session, std::size_t count) {
+  test::LitRoom lit(session, count);
+  return {
+      fmt::format("room, {} points", lit.points.size()), lit.pools, lit.variant, lit.points, {}, lit.direct, {}, 1.0};
+}
+
+/// A scene file or a bare cloud; `within`: what shines takes part in the exchange.
+BenchScene from_file(Session& session, const std::string& name, const std::string& file,
+                     const std::vector<std::string>& overrides = {}, bool within = false) {
+  Scene scene = load_scene(file, overrides);
+  StageLog stages;
+  PreparedScene ready = prepare_scene(session, scene, file.find(".toml") == std::string::npos, stages);
+  BenchScene bench{name, ready.on_device, ready.choice.variant, {}, {}, {}, {}, ready.frame.side};
+  bench.points.assign(ready.points.begin(), ready.points.end());
+  bench.exchanges = exchanging_materials(scene);
+  bench.direct =
+      session.download(direct_irradiance_of_points(session, bench.pools, bench.variant, ready.lighting, bench.side,
+                                                   bench.points.size(), 64, !within, [] { return false; }),
+                       3 * bench.points.size());
+  if (within) bench.emitted = emitted_radiosity(ready.lighting, bench.points);
+  bench.name += fmt::format(", {} points", bench.points.size());
+  return bench;
+}
+
+struct Way {
+  std::string name;
+  RadiositySettings settings;
+};
+
+Way way(const std::string& name, const std::string& method, void (*set)(RadiositySettings&)) {
+  Way w{name, {}};
+  w.settings.method = method;
+  set(w.settings);
+  return w;
+}
+
+struct Result {
+  double seconds = 0.0;
+  std::uint64_t rays = 0, bytes = 0;
+  std::vector<double> radiosity; ///< [points x 3]: reflected, all light
+};
+
+Result run(Session& session, const BenchScene& scene, const Way& w) {
+  const auto begin = std::chrono::steady_clock::now();
+  const RadiosityMethod& method = *radiosity_method(w.settings.method);
+  const ExchangeScene exchange = scene.exchange();
+  std::optional<RadiosityMap> map;
+  if (method.without_vmap == nullptr) map = map_visibility(session, exchange, w.settings, quiet);
+  const std::uint64_t bytes_of_map = map ? map->vmap.links.size() * sizeof(Link) + map->vmap.point_shares.size() : 0;
+  const auto prepared = method.prepare(session, exchange, w.settings, std::move(map), quiet);
+  const RadiosityField field = prepared->solve({scene.direct, scene.emitted}, w.settings.tolerance, quiet);
+  Result result;
+  result.seconds = seconds_since(begin);
+  result.rays = prepared->rays();
+  result.bytes = bytes_of_map;
+  for (const MethodStatistic& s : prepared->statistics())
+    if (std::string(s.name).find("bytes") != std::string::npos) result.bytes = s.value;
+  if (std::string(method.name) == "direct") {
+    std::size_t points = 0;
+    for (const Splat& s : scene.points)
+      points += scene.exchanges.empty() || scene.exchanges[static_cast<std::size_t>(s.material)] != 0;
+    result.bytes = direct_bytes(points);
+  }
+  for (std::size_t i = 0; i < field.irradiance.size(); ++i)
+    result.radiosity.push_back(double{scene.points[i / 3].colour[i % 3]} *
+                               (double{scene.direct[i]} + double{field.irradiance[i]}));
+  return result;
+}
+
+struct Errors {
+  double relative = 0.0; ///< L2
+  double bias = 0.0;     ///< of the mean by area
+  double seam = 0.0; ///< the 99.9th percentile of the errors' difference between a point and its nearest, over the mean
+};
+
+/// A near point of each that faces about the same way, among those beside it in the pool's order; itself where there is
+/// none.
+std::vector<std::uint32_t> neighbours_of(const BenchScene& scene) {
+  constexpr int reach = 24;
+  std::vector<std::uint32_t> result(scene.points.size());
+  const auto points = static_cast<int>(scene.points.size());
+  for (int i = 0; i < points; ++i) {
+    const Splat& p = scene.points[i];
+    double nearest = INFINITY;
+    result[i] = static_cast<std::uint32_t>(i);
+    for (int j = std::max(0, i - reach); j < std::min(points, i + reach + 1); ++j) {
+      const Splat& q = scene.points[j];
+      double square = 0.0, cosine = 0.0;
+      for (int a = 0; a < 3; ++a) {
+        square += (double{p.position[a]} - q.position[a]) * (double{p.position[a]} - q.position[a]);
+        cosine += double{p.normal[a]} * q.normal[a];
+      }
+      if (j == i || cosine < 0.9 || square >= nearest) continue;
+      nearest = square;
+      result[i] = static_cast<std::uint32_t>(j);
+    }
+  }
+  return result;
+}
+
+Errors errors_of(const BenchScene& scene, const std::vector<std::uint32_t>& neighbours, const std::vector<double>& b,
+                 const std::vector<double>& truth) {
+  Errors e;
+  e.relative = test::relative_l2(b, truth);
+  double sum = 0.0, of_truth = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    sum += b[i] * double{scene.points[i / 3].area};
+    of_truth += truth[i] * double{scene.points[i / 3].area};
+    area += double{scene.points[i / 3].area};
+  }
+  e.bias = sum / of_truth - 1.0;
+  std::vector<double> seams;
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    const std::size_t j = neighbours[i];
+    seams.push_back(std::fabs((b[3 * i] - truth[3 * i]) - (b[3 * j] - truth[3 * j])) / (of_truth / area));
+  }
+  std::sort(seams.begin(), seams.end());
+  e.seam = seams[static_cast<std::size_t>(0.999 * static_cast<double>(seams.size() - 1))];
+  return e;
+}
+
+std::string row(const std::string& scene, const std::string& name, const Result& r, const Errors* e) {
+  std::string text = fmt::format("| {} | {} | {:.2f} | {:.1f} | {:.0f} |", scene, name, r.seconds,
+                                 1e-6 * static_cast<double>(r.rays), 1e-6 * static_cast<double>(r.bytes));
+  text += e == nullptr ? " truth | | |"
+                       : fmt::format(" {:.2f} | {:+.2f} | {:.1f} |", 100 * e->relative, 100 * e->bias, 100 * e->seam);
+  std::printf("%s\n", text.c_str());
+  std::fflush(stdout);
+  return text + "\n";
+}
+
+std::vector<Way> usual_ways() {
+  return {
+      way("fmm", "fmm", [](RadiositySettings&) {}),
+      way("directions 256", "directions", [](RadiositySettings& s) { s.directions = 256; }),
+      way("directions 512", "directions", [](RadiositySettings&) {}),
+      way("directions 1024", "directions", [](RadiositySettings& s) { s.directions = 1024; }),
+      way("hemicube 588", "directions", [](RadiositySettings& s) { s.directions = 588, s.direction_set = "hemicube"; }),
+      way("gather static 128", "gather", [](RadiositySettings& s) { s.sampling = "static"; }),
+      way("gather monte_carlo 128", "gather", [](RadiositySettings& s) { s.sampling = "monte_carlo"; }),
+      way("gather mipmap 128", "gather", [](RadiositySettings& s) { s.sampling = "mipmap"; }),
+      way("gather adaptive 128", "gather", [](RadiositySettings& s) { s.sampling = "adaptive"; })};
+}
+
+std::vector<Way> windows_ways() {
+  std::vector<Way> ways;
+  for (const char* sampling : {"static", "monte_carlo", "mipmap", "adaptive"})
+    for (const int window : {4, 16, 64}) {
+      Way w = way(fmt::format("gather {} {}", sampling, window), "gather", [](RadiositySettings&) {});
+      w.settings.sampling = sampling;
+      w.settings.window = window;
+      ways.push_back(w);
+    }
+  for (const int voxels : {32, 64, 128}) {
+    Way w = way(fmt::format("gather all, voxels {}", voxels), "gather",
+                [](RadiositySettings& s) { s.visibility = "voxels"; });
+    w.settings.voxels = voxels;
+    ways.push_back(w);
+  }
+  return ways;
+}
+
+Way many_directions() {
+  return way("directions 4096", "directions", [](RadiositySettings& s) { s.directions = 4096; });
+}
+
+/// What auto chooses, and whether fmm or directions was cheaper: as they come, and where directions are as many as make
+/// the error of fmm.
+struct Choice {
+  std::string scene, chosen;
+  double estimate = 0.0, vmap_rays = 0.0, fmm_seconds = 0.0, directions_seconds = 0.0, equal_directions = 0.0;
+
+  double equal_seconds() const { return directions_seconds * equal_directions / 512.0; }
+  bool right() const { return (chosen == "fmm") == (fmm_seconds < equal_seconds()); }
+};
+
+class Bench {
+public:
+  explicit Bench(Session& session) : session_(session) {}
+
+  /// All of `ways` against the truth; where `choice`, the planner beside them.
+  void measure(const BenchScene& scene, const Way& truth, const std::vector<Way>& ways, bool choice) {
+    const auto neighbours = neighbours_of(scene);
+    const Result exact = run(session_, scene, truth);
+    table_ += row(scene.name, truth.name, exact, nullptr);
+    std::map<std::string, std::pair<Result, Errors>> found;
+    for (const Way& w : ways) {
+      const Result r = run(session_, scene, w);
+      const Errors e = errors_of(scene, neighbours, r.radiosity, exact.radiosity);
+      table_ += row(scene.name, w.name, r, &e);
+      found[w.name] = {r, e};
+    }
+    if (!choice) return;
+    Choice c;
+    c.scene = scene.name;
+    const RadiosityMap clusters = cluster_points(session_, scene.exchange(), {});
+    const MethodPlan plan = plan_method(session_, scene.exchange(), {}, clusters, false);
+    c.chosen = plan.method->name;
+    c.estimate = plan.vmap.rays;
+    c.vmap_rays = static_cast<double>(found["fmm"].first.rays);
+    c.fmm_seconds = found["fmm"].first.seconds;
+    c.directions_seconds = found["directions 512"].first.seconds;
+    // Error by directions falls as a power of their number between 256 and 1024.
+    const double e256 = found["directions 256"].second.relative, e1024 = found["directions 1024"].second.relative;
+    const double power = std::log(e256 / e1024) / std::log(4.0);
+    c.equal_directions = 256.0 * std::pow(e256 / found["fmm"].second.relative, 1.0 / std::max(0.1, power));
+    c.equal_directions = std::clamp(c.equal_directions, 16.0, 4096.0);
+    choices_.push_back(c);
+    std::printf("%s", choice_row(c).c_str());
+  }
+
+  static std::string choice_row(const Choice& c) {
+    return fmt::format("| {} | {:.1f} | {:.1f} | {} | {:.2f} | {:.2f} | {:.0f} | {:.2f} | {} |\n", c.scene,
+                       1e-6 * c.estimate, 1e-6 * c.vmap_rays, c.chosen, c.fmm_seconds, c.directions_seconds,
+                       c.equal_directions, c.equal_seconds(), c.right() ? "yes" : "no");
+  }
+
+  std::string tables() const {
+    std::string text = "| scene | method | seconds | million rays | MB kept | relative L2 % | bias % | seam % |\n"
+                       "|---|---|---|---|---|---|---|---|\n" +
+                       table_;
+    if (choices_.empty()) return text;
+    text += "\n| scene | V-map's rays, estimated (million) | asked | `auto` takes | fmm s | 512 directions s | "
+            "directions of equal "
+            "error | their s | the cheaper |\n|---|---|---|---|---|---|---|---|---|\n";
+    for (const Choice& c : choices_)
+      text += choice_row(c);
+    return text;
+  }
+
+private:
+  Session& session_;
+  std::string table_;
+  std::vector<Choice> choices_;
+};
+
+/// A closed box with a square lamp of side s on its ceiling, whose light is exchanged with that of the walls.
+BenchScene lamp_room(Session& session, double side) {
+  const test::TemporaryFolder folder;
+  const std::string text = fmt::format(
+      "version = 1\n[camera]\nposition = [0, 0, 0.9]\nlook_at = [0, 0, 0]\n[radiosity]\ndirect_light = \"radiosity\"\n"
+      "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.7, 0.7, 0.7]\n"
+      "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0, 0, 0]\nemission = [10, 10, 10]\n"
+      "[[shape]]\ntype = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\ninward = true\nspacing = 0.04\nmaterial = "
+      "\"white\"\n"
+      "[[shape]]\ntype = \"quad\"\ncorner = [{0}, 0.99, {0}]\nedge_u = [{1}, 0, 0]\nedge_v = [0, 0, {1}]\nspacing = "
+      "{2}\n"
+      "material = \"lamp\"\n",
+      -side / 2, side, std::min(0.04, side / 4));
+  return from_file(session, fmt::format("box with a lamp of {}", side), folder.write("lamp.toml", text), {}, true);
+}
+
+/// Puts `text` between the marks of a file, in place of what stands there.
+void write_between(const std::string& file, const std::string& mark, const std::string& text) {
+  std::ifstream in(file);
+  std::string all((std::istreambuf_iterator<char>(in)), {});
+  const std::string begin = "<!-- begin " + mark + " -->\n", end = "<!-- end " + mark + " -->";
+  const std::size_t from = all.find(begin), to = all.find(end);
+  if (from == std::string::npos || to == std::string::npos)
+    throw std::runtime_error(file + ": no place for the tables, between \"" + begin + "\" and \"" + end + "\"");
+  all.replace(from + begin.size(), to - from - begin.size(), text);
+  std::ofstream(file) << all;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Radiosity methods against the solver of every pair"};
+  std::string page;
+  bool only_room = false, only_lamps = false, only_growth = false, only_choice = false;
+  std::vector<std::string> files;
+  app.add_option("--files", files, "scenes and clouds besides the rooms")->check(CLI::ExistingFile);
+  app.add_option("--page", page, "a file between whose marks the tables are put")->check(CLI::ExistingFile);
+  app.add_flag("--room", only_room, "only the rooms");
+  app.add_flag("--lamps", only_lamps, "only lamps of several sizes");
+  app.add_flag("--growth", only_growth, "only how rays grow with the points");
+  app.add_flag("--files-only", only_choice, "only --files");
+  CLI11_PARSE(app, argc, argv);
+  const bool all = !only_room && !only_lamps && !only_growth && !only_choice;
+  try {
+    spdlog::set_level(spdlog::level::err);
+    const test::CacheFolder empty; // or V-maps of earlier runs are taken
+    Session session(choose_device(""));
+    std::string text = fmt::format("Device: {} ({}).\n\n", session.info().name, session.info().platform);
+    const Way direct = way("direct", "direct", [](RadiositySettings&) {});
+    for (const Way& w : usual_ways()) // builds the kernels
+      run(session, room(session, 1000), w);
+    if (all || only_room) {
+      Bench bench(session);
+      std::vector<Way> ways = usual_ways();
+      const std::vector<Way> more = windows_ways();
+      ways.insert(ways.end(), more.begin(), more.end());
+      bench.measure(room(session, 20'000), direct, ways, true);
+      bench.measure(room(session, 100'000), many_directions(), usual_ways(), true);
+      text += bench.tables() + "\n";
+    }
+    if (all || only_lamps) {
+      Bench bench(session);
+      for (const double side : {1.0, 0.5, 0.25, 0.12, 0.06})
+        bench.measure(
+            lamp_room(session, side), direct,
+            {way("fmm", "fmm", [](RadiositySettings&) {}),
+             way("directions 512", "directions", [](RadiositySettings&) {}),
+             way("gather monte_carlo 128", "gather", [](RadiositySettings& s) { s.sampling = "monte_carlo"; })},
+            false);
+      text += bench.tables() + "\n";
+    }
+    if (all || only_growth) {
+      text += "| points | fmm | directions 512 | gather mipmap 128 | gather all |\n|---|---|---|---|---|\n";
+      for (const std::size_t points : {2'500u, 5'000u, 10'000u, 20'000u}) {
+        const BenchScene scene = room(session, points);
+        text += fmt::format("| {} |", scene.points.size());
+        for (const Way& w :
+             {way("", "fmm", [](RadiositySettings&) {}), way("", "directions", [](RadiositySettings&) {}),
+              way("", "gather", [](RadiositySettings& s) { s.sampling = "mipmap"; }),
+              way("", "gather", [](RadiositySettings&) {})}) {
+          const Result r = run(session, scene, w);
+          text += fmt::format(" {:.2f} million rays, {:.2f} s |", 1e-6 * static_cast<double>(r.rays), r.seconds);
+        }
+        text += "\n";
+      }
+      text += "\n";
+    }
+    if (all || only_choice) {
+      Bench bench(session);
+      for (const std::string& file : files)
+        bench.measure(from_file(session, std::filesystem::path(file).stem().string(), file), many_directions(),
+                      {usual_ways().begin(), usual_ways().begin() + 4}, true);
+      if (!files.empty()) text += bench.tables();
+    }
+    std::printf("\n%s", text.c_str());
+    if (!page.empty()) write_between(page, "tables", text);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
