@@ -10,10 +10,10 @@ struct MethodPlan {
   LinkEstimate vmap;             ///< what the V-map would ask
 };
 
-/// Rays of method "directions" that a ray of the V-map may cost before "directions" is taken: the V-map's are cheaper,
-/// as any hit ends them; what the fast multipole method does with them takes about as much as is saved.
-/// bench_methods measures both (docs/method/methods.md).
-constexpr double dearer_factor = 1.0;
+/// "directions" is taken where the V-map would ask more than this share of its rays: a ray of the V-map, with what its
+/// traversal and the fast multipole method take, costs about two of directions. bench_methods measures both
+/// (docs/method/methods.md).
+constexpr double dearer_factor = 0.5;
 
 /// Compares what the V-map would ask, from a sample of its questions, with points x settings.directions. Depends on the
 /// scene and the settings alone, not on how fast a device is or what is kept from earlier runs. `emitters_exchange`:
