@@ -20,6 +20,7 @@ struct CompleteOptions {
   std::optional<Eigen::Vector3d> viewpoint; ///< the sensor: estimated normals are turned towards it
   StrayPolicy strays = StrayPolicy::drop;
   std::vector<Eigen::Vector3d> eyes; ///< camera and lamps of the scene, the file's coordinates: they see fronts
+  bool bent_discs_end = true;        ///< BorderEvidence::bent_end
   std::optional<Eigen::Vector3d> up; ///< unit, the file's coordinates: the user's word; absent: CloudReport::up
 };
 

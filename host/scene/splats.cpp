@@ -87,7 +87,8 @@ void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& po
 /// What is known beyond the file, in the cloud's own coordinates: what the scene's camera and lamps see faces them.
 CompleteOptions completion_of(const CloudSettings& settings, const Scene& scene) {
   const CloudPose pose(settings);
-  CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, {}};
+  CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, true, {}};
+  options.bent_discs_end = scene.traversal.surface == SurfaceForm::discs;
   if (scene.camera.chosen) options.eyes.push_back(pose.to_cloud(scene.camera.position));
   for (const LightSettings& light : scene.lights)
     if (!light.is_far && light.type == LightType::point) options.eyes.push_back(pose.to_cloud(light.vector));
