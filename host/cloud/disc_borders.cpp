@@ -307,8 +307,10 @@ private:
     bent_.begin(n, radius, evidence_.normals_given);
     for (unsigned j = 0; j < count_; ++j) {
       const Sites::Points points = sites_.points(near_[j].site);
-      for (std::size_t p = 0; p < std::min<std::size_t>(points.size(), planes_a_site); ++p)
-        bent_.add(offset(j), cloud_.normal[points.first[p]].cast<double>());
+      for (std::size_t p = 0; p < std::min<std::size_t>(points.size(), planes_a_site); ++p) {
+        const Vector3d m = cloud_.normal[points.first[p]].cast<double>();
+        if (!(n.dot(m) > evidence_.followed_cosine)) bent_.add(offset(j), m);
+      }
     }
   }
   /// Ends at rims, and where the surface is bent.
@@ -317,7 +319,7 @@ private:
     add_rim(ends, rim, radius);
     // The cell of a point that is farther from a mesh's edge may reach to it all the same.
     const bool fills_face = evidence_.from_faces && is_set(rim.strip[0]);
-    const bool is_bent = evidence_.bent_end && bent_.worst([](const Vector3d&) { return true; }).height > visible * radius;
+    const bool is_bent = bent_.worst([](const Vector3d&) { return true; }).height > visible * radius;
     if (!fills_face && !is_bent) return ends;
     CellPolygon cell(8.0 * radius);
     lay_cell(frame, rim, cell);
@@ -328,7 +330,7 @@ private:
       ends.clip = {};
       add_rim(ends, rim, ends.radius);
     }
-    if (evidence_.bent_end) add_bent(ends.clip, frame, cell, radius);
+    add_bent(ends.clip, frame, cell, radius);
     if (fills_face) {
       for (const ClipStrips::Strip& strip : rim.strip)
         if (is_set(strip)) move_inside(ends, strip.axis, strip.high);

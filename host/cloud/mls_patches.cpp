@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pointgi {
 
@@ -18,8 +19,6 @@ constexpr int quadratic_terms = 6, plane_terms = 3;
 /// Fits that move the frame, before the one that gives the bend. The second moves it by less than float rounds where
 /// the first turned it by a degree.
 constexpr int frame_fits = 2;
-/// As discs that are blended (kernels/surface/blend.cl).
-constexpr double same_surface_cosine = 0.5;
 /// Least over greatest pivot of the normal equations, lengths in supports: below, neighbours stand on a line or on few
 /// places. Evenly spread ones have 1e-3.
 constexpr double least_pivot = 1e-6;
@@ -29,6 +28,13 @@ constexpr double most_deviation = 0.15;
 constexpr double most_shift = 0.5, least_turn_cosine = 0.7;
 /// The radius in supports beyond which a quadratic would run past the neighbours that it was fitted to.
 constexpr double most_reach = 0.9;
+/// Of the neighbours' normals with the patch's, a mean: 30 degrees, more than noise of normals.
+constexpr double least_agreement = 0.87;
+/// Of a splat whose neighbours lie on no quadratic, as at a sharp rim: what is left of its radius, that it does not stick
+/// out of them. Most of its cell, and the neighbours' patches reach into the rest.
+constexpr float refused_radius = 0.6f;
+/// Of a patch, over its radius: it then leaves its box at a third of that.
+constexpr double most_bend = 4.0;
 /// A neighbour may lie on its own clip's border but for rounding, in radii.
 constexpr float on_border = 1e-3f;
 
@@ -44,7 +50,7 @@ double wendland(double r) {
 }
 
 struct Sample {
-  Vector3d off; ///< from the splat's centre
+  Vector3d off, normal; ///< off: from the splat's centre
   double weight;
 };
 
@@ -53,6 +59,7 @@ enum class Kind { disc, plane, patch };
 struct Fit {
   Kind kind = Kind::disc;
   Vector3d shift{0, 0, 0}; ///< of the centre
+  bool refused = false;    ///< neighbours determine a quadratic, and do not lie on it
   float normal[3] = {0.0f, 0.0f, 0.0f};
   PatchBend bend = {0.0f, 0.0f, 0.0f, 0.0f};
 };
@@ -84,8 +91,9 @@ public:
     collect(point, around);
     const bool within = splat.radius < most_reach * around.support;
     if (within && fit_terms<quadratic_terms>(splat, around, result) && is_in_root(splat, result)) return result;
-    result = {};
+    const bool refused = std::exchange(result, {}).refused;
     if (!fit_terms<plane_terms>(splat, around, result) || !is_in_root(splat, result)) result = {};
+    result.refused = refused;
     return result;
   }
 
@@ -110,7 +118,7 @@ private:
   /// Of several points in one place, as of a sheet's two sides, the one that faces as the splat does.
   const Splat* facing_point(const Splat& splat, std::uint32_t site) const {
     const Splat* best = nullptr;
-    double most = same_surface_cosine;
+    double most = mls_surface_cosine;
     for (const std::uint32_t other : sites_.points(site)) {
       const Splat& candidate = splats_[other];
       const double cosine = vector(candidate.normal).dot(vector(splat.normal));
@@ -131,13 +139,14 @@ private:
 
   void collect(std::uint32_t point, Around& around) const {
     const Splat& splat = splats_[point];
-    around.samples.assign(1, {Vector3d::Zero(), 1.0});
+    around.samples.assign(1, {Vector3d::Zero(), vector(splat.normal), 1.0});
     for (unsigned i = 0; i < around.count; ++i) {
       const Splat* other = facing_point(splat, around.near[i].site);
       if (other == nullptr) continue;
       const Vector3d off = vector(other->position) - vector(splat.position);
       const double weight = wendland(off.norm() / around.support);
-      if (weight > 0.0 && !is_past_border(point, off)) around.samples.push_back({off, weight});
+      const bool turned = vector(other->normal).dot(vector(splat.normal)) < mls_followed_cosine;
+      if (weight > 0.0 && !(turned && is_past_border(point, off))) around.samples.push_back({off, vector(other->normal), weight});
     }
   }
 
@@ -190,23 +199,41 @@ private:
       for (int a = 0; a < 3; ++a)
         result.normal[a] = static_cast<float>(turned[a]);
     }
-    if (!(foot.norm() <= most_shift * splat.radius) ||
-        !(vector(result.normal).dot(vector(splat.normal)) >= least_turn_cosine) ||
-        !(deviation2 <= most_deviation * most_deviation))
-      return false;
+    result.refused = !(foot.norm() <= most_shift * splat.radius) ||
+                     !(vector(result.normal).dot(vector(splat.normal)) >= least_turn_cosine) ||
+                     !(deviation2 <= most_deviation * most_deviation);
+    if (result.refused) return false;
     result.shift = foot;
     result.kind = Terms == quadratic_terms ? Kind::patch : Kind::plane;
     if constexpr (Terms == quadratic_terms) {
       if (!solve<Terms>(around, foot, result.normal, c, &deviation2)) return false;
       result.bend = bend_of(c[3] / around.support, c[4] / around.support, c[5] / around.support, splat.radius);
+      result.refused = !(agreement(around, result) >= least_agreement);
+      if (result.refused) return false;
     }
     return true;
   }
 
-  /// Flattened where it would stand off its disc too far.
+  /// Mean cosine of the neighbours' normals with the patch's below them.
+  static double agreement(const Around& around, const Fit& fit) {
+    float u_of[3], v_of[3];
+    splat_tangents(fit.normal, u_of, v_of);
+    const Vector3d n = vector(fit.normal), u = vector(u_of), v = vector(v_of);
+    double cosines = 0.0, weights = 0.0;
+    for (const Sample& s : around.samples) {
+      const double x = (s.off - fit.shift).dot(u), y = (s.off - fit.shift).dot(v);
+      const Vector3d normal = n - (2.0 * fit.bend.xx * x + fit.bend.xy * y) * u -
+                              (fit.bend.xy * x + 2.0 * fit.bend.yy * y) * v;
+      cosines += s.weight * normal.normalized().dot(s.normal);
+      weights += s.weight;
+    }
+    return cosines / weights;
+  }
+
+  /// No steeper than floats are good for.
   static PatchBend bend_of(double xx, double xy, double yy, double radius) {
     const double steepest = 0.5 * std::abs(xx + yy) + std::hypot(0.5 * (xx - yy), 0.5 * xy);
-    const double most = 0.999 * PATCH_HEIGHT / radius, scale = steepest > most ? most / steepest : 1.0;
+    const double most = most_bend / radius, scale = steepest > most ? most / steepest : 1.0;
     return {static_cast<float>(scale * xx), static_cast<float>(scale * xy), static_cast<float>(scale * yy), 0.0f};
   }
 
@@ -266,6 +293,7 @@ MlsPatches fit_mls_patches(std::vector<Splat>& splats, const SplatClips& clips, 
       continue;
     }
     const Fit& fit = fits[k];
+    if (fit.refused) splat.radius *= refused_radius;
     (fit.kind == Kind::patch ? result.patches : fit.kind == Kind::plane ? result.planes : result.discs) += 1;
     if (fit.kind == Kind::disc) continue;
     for (int a = 0; a < 3; ++a)

@@ -1,4 +1,5 @@
 #include "host/scene/splats.h"
+#include "host/cloud/mls_patches.h"
 #include "host/cloud/readers/readers.h"
 #include "host/error.h"
 #include "host/image/srgb.h"
@@ -87,8 +88,8 @@ void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& po
 /// What is known beyond the file, in the cloud's own coordinates: what the scene's camera and lamps see faces them.
 CompleteOptions completion_of(const CloudSettings& settings, const Scene& scene) {
   const CloudPose pose(settings);
-  CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, true, {}};
-  options.bent_discs_end = scene.traversal.surface == SurfaceForm::discs;
+  CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, {}};
+  if (scene.traversal.surface == SurfaceForm::mls) options.followed_cosine = mls_followed_cosine;
   if (scene.camera.chosen) options.eyes.push_back(pose.to_cloud(scene.camera.position));
   for (const LightSettings& light : scene.lights)
     if (!light.is_far && light.type == LightType::point) options.eyes.push_back(pose.to_cloud(light.vector));

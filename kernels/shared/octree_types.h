@@ -80,14 +80,14 @@ typedef struct DiscClip {
 #define CLIP_MARGIN(radius) (SEGMENT_MARGIN(radius) + 1e-7f)
 
 /* How a splat's patch of the moving-least-squares surface (HAS_MLS) stands off its disc: at x u + y v from the centre,
- * (u, v) being the tangents of the normal, by x (xx x + xy y) + yy y y along the normal. It ends where its disc does.
- * All 0: the disc itself. */
+ * (u, v) being the tangents of the normal, by x (xx x + xy y) + yy y y along the normal. It ends where its disc does, and
+ * at PATCH_HEIGHT. All 0: the disc itself. */
 typedef struct PatchBend {
   float xx, xy, yy; /* texel 3, bytes 0-11: 1 / root cube */
   float reserved;   /* texel 3, bytes 12-15: 0 */
 } PatchBend;
 
-/* A patch stands off its disc by no more than this, in radii of the disc. */
+/* How far off its disc a patch reaches, in radii of the disc: half of its box's height. */
 #define PATCH_HEIGHT 0.5f
 /* Square of the radius of a ball about the centre that holds every patch, in radii of the disc: 1 + PATCH_HEIGHT
  * squared, and rounding. */

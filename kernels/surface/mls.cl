@@ -5,10 +5,11 @@
 #include "lib/vector.cl"
 #include "shared/octree_types.h"
 
-/* The roots s at which (x, y, z) + s (dx, dy, dz) meets z = x (xx x + xy y) + yy y y inside x^2 + y^2 <= r2, the nearer
- * first; INFINITY for each that there is not, or where `candidate` does not hold. What is divided is never what cancels; NaN
- * of a root below 0, and of a patch along the ray, fails the comparison. `real`: float or a vector; `mask`: its comparisons. */
-#define PATCH_ROOTS(real, mask, x, y, z, dx, dy, dz, xx, xy, yy, r2, candidate, near_s, far_s)              \
+/* The roots s at which (x, y, z) + s (dx, dy, dz) meets z = x (xx x + xy y) + yy y y inside x^2 + y^2 <= r2 and
+ * |z| <= height, the nearer first; INFINITY for each that there is not, or where `candidate` does not hold. What is divided is
+ * never what cancels; NaN of a root below 0, and of a patch along the ray, fails the comparison. `real`: float or a vector;
+ * `mask`: its comparisons. */
+#define PATCH_ROOTS(real, mask, x, y, z, dx, dy, dz, xx, xy, yy, r2, height, candidate, near_s, far_s)      \
   {                                                                                                         \
     const real a_ = fma(dx, fma(xx, dx, xy * dy), yy * dy * dy);                                            \
     const real b_ = dz - fma(x, fma(2.0f * xx, dx, xy * dy), y * fma(2.0f * yy, dy, xy * dx));              \
@@ -16,7 +17,8 @@
     const real w_ = -0.5f * (b_ + copysign(sqrt(fma(b_, b_, 4.0f * a_ * c_)), b_));                         \
     const real s0_ = c_ / w_, s1_ = w_ / -a_;                                                               \
     const real x0_ = fma(s0_, dx, x), y0_ = fma(s0_, dy, y), x1_ = fma(s1_, dx, x), y1_ = fma(s1_, dy, y);  \
-    const mask in0_ = candidate & (fma(x0_, x0_, y0_ * y0_) <= r2), in1_ = candidate & (fma(x1_, x1_, y1_ * y1_) <= r2); \
+    const mask in0_ = candidate & (fma(x0_, x0_, y0_ * y0_) <= r2) & (fabs(fma(s0_, dz, z)) <= height);     \
+    const mask in1_ = candidate & (fma(x1_, x1_, y1_ * y1_) <= r2) & (fabs(fma(s1_, dz, z)) <= height);     \
     const real t0_ = select((real)(INFINITY), s0_, in0_), t1_ = select((real)(INFINITY), s1_, in1_);        \
     near_s = min(t0_, t1_);                                                                                 \
     far_s = max(t0_, t1_);                                                                                  \
@@ -42,7 +44,8 @@ static inline PatchRay patch_ray(float3 o, float3 d, float4 c, float3 n, float4 
   tangents(n, &p.u, &p.v);
   p.x = dot3(p.u, off), p.y = dot3(p.v, off), p.z = dot3(n, off);
   p.dx = dot3(p.u, d), p.dy = dot3(p.v, d), p.dz = dot3(n, d);
-  PATCH_ROOTS(float, int, p.x, p.y, p.z, p.dx, p.dy, p.dz, bend.x, bend.y, bend.z, r2, 1, p.near_s, p.far_s)
+  PATCH_ROOTS(float, int, p.x, p.y, p.z, p.dx, p.dy, p.dz, bend.x, bend.y, bend.z, r2, PATCH_HEIGHT * c.w, 1,
+              p.near_s, p.far_s)
   return p;
 }
 

@@ -36,7 +36,7 @@ static inline BlockHits meet_patch_lanes(const __global float* block, float3 ori
   const lanes_f xx = load_lanes(block + WIDE_BEND(WIDE_LANES, 0)), xy = load_lanes(block + WIDE_BEND(WIDE_LANES, 1));
   const lanes_f yy = load_lanes(block + WIDE_BEND(WIDE_LANES, 2));
   lanes_f near_s, far_s;
-  PATCH_ROOTS(lanes_f, lanes_i, x, y, z, dx, dy, dz, xx, xy, yy, r2, near, near_s, far_s)
+  PATCH_ROOTS(lanes_f, lanes_i, x, y, z, dx, dy, dz, xx, xy, yy, r2, PATCH_HEIGHT * h.radius, near, near_s, far_s)
   h.more = any_lane(far_s < INFINITY);
   const lanes_f root = farther ? far_s : near_s;
   h.inside = root < INFINITY;
@@ -94,7 +94,8 @@ static inline PatchRays patch_rays(float16 gx, float16 gy, float16 gz, float3 ce
   p.dy = fma((float16)(v.x), gx, fma((float16)(v.y), gy, v.z * gz));
   const float16 dz = fma((float16)(n.x), gx, fma((float16)(n.y), gy, n.z * gz));
   const float16 xx = (float16)(bend.x), xy = (float16)(bend.y), yy = (float16)(bend.z);
-  PATCH_ROOTS(float16, int16, p.x, p.y, z, p.dx, p.dy, dz, xx, xy, yy, r2, near, p.near_s, p.far_s)
+  const float16 height = (float16)(PATCH_HEIGHT * radius);
+  PATCH_ROOTS(float16, int16, p.x, p.y, z, p.dx, p.dy, dz, xx, xy, yy, r2, height, near, p.near_s, p.far_s)
   return p;
 }
 

@@ -9,7 +9,9 @@ Slab slab_of(const PatchBend& bend, float radius) {
   const float mean = 0.5f * (bend.xx + bend.yy), apart = std::hypot(0.5f * (bend.xx - bend.yy), 0.5f * bend.xy);
   if (mean == 0.0f && apart == 0.0f) return {};
   const float r2 = radius * radius, rounding = 1e-5f * (std::fabs(mean) + apart) * r2;
-  const float low = std::min(0.0f, (mean - apart) * r2) - rounding, high = std::max(0.0f, (mean + apart) * r2) + rounding;
+  const float most = PATCH_HEIGHT * radius;
+  const float low = std::max(std::min(0.0f, (mean - apart) * r2), -most) - rounding;
+  const float high = std::min(std::max(0.0f, (mean + apart) * r2), most) + rounding;
   return {0.5f * (low + high), 0.5f * (high - low)};
 }
 

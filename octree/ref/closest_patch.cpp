@@ -32,6 +32,8 @@ public:
     return p.z() - (bend_.xx * p.x() * p.x() + bend_.xy * p.x() * p.y() + bend_.yy * p.y() * p.y());
   }
 
+  bool in_box(double t, double radius) const { return std::abs((start_ + t * along_).z()) <= PATCH_HEIGHT * radius; }
+
   /// Where the ray is over the disc; false where it is not between t_min and t_max.
   bool over_disc(double radius, double* low, double* high) const {
     const double across2 = along_.head<2>().squaredNorm(), middle = -start_.head<2>().dot(along_.head<2>());
@@ -85,6 +87,7 @@ RayHit closest_patch_hit(View<Splat> splats, View<PatchBend> bends, const double
     for (int part = 0; part < 2; ++part) {
       double t;
       if (!ray.cross(cuts[part], cuts[part + 1], &t) || !(t < best.t)) continue;
+      if (!ray.in_box(t, s.radius)) continue;
       const Vector3d off = from + t * towards - Vector3d(s.position[0], s.position[1], s.position[2]);
       if (clips.size != 0 && is_clipped_off(clips[i], off.data())) continue;
       best = {t, static_cast<std::uint32_t>(i)};

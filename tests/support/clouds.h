@@ -131,7 +131,7 @@ inline std::vector<DiscClip> of_all(const SplatClips& clips, const std::vector<S
   return all;
 }
 
-/// A bend for each splat, up to what patches may have, a seventh of them flat; that of a sheet's back is its front's from
+/// A bend for each splat, a seventh of them flat, others so steep that they end at PATCH_HEIGHT; that of a sheet's back is its front's from
 /// behind.
 inline PatchBends random_bends(const std::vector<Splat>& splats, unsigned seed) {
   std::mt19937 g(seed);
@@ -144,7 +144,7 @@ inline PatchBends random_bends(const std::vector<Splat>& splats, unsigned seed) 
       continue;
     }
     // The steepest curvature of such a form is at most |xx + yy| / 2 + |(xx - yy, xy)| / 2.
-    const float most = i % 7 == 0 ? 0.0f : 0.999f * PATCH_HEIGHT / splats[i].radius, turn = 3.14159265f * share(g);
+    const float most = i % 7 == 0 ? 0.0f : 2.0f * PATCH_HEIGHT / splats[i].radius, turn = 3.14159265f * share(g);
     const float mean = most * share(g), apart = (most - std::fabs(mean)) * std::fabs(share(g));
     bends.push_back({mean + apart * std::cos(turn), 2.0f * apart * std::sin(turn), mean - apart * std::cos(turn), 0.0f});
   }
