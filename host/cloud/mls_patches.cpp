@@ -19,6 +19,9 @@ constexpr int quadratic_terms = 6, plane_terms = 3;
 /// Fits that move the frame, before the one that gives the bend. The second moves it by less than float rounds where
 /// the first turned it by a degree.
 constexpr int frame_fits = 2;
+/// Of a neighbour past a splat's border: less, and the border is an edge; more, and it may be where a disc would stick
+/// out of a bend that a patch follows.
+constexpr double border_cosine = 0.8;
 /// Least over greatest pivot of the normal equations, lengths in supports: below, neighbours stand on a line or on few
 /// places. Evenly spread ones have 1e-3.
 constexpr double least_pivot = 1e-6;
@@ -145,7 +148,7 @@ private:
       if (other == nullptr) continue;
       const Vector3d off = vector(other->position) - vector(splat.position);
       const double weight = wendland(off.norm() / around.support);
-      const bool turned = vector(other->normal).dot(vector(splat.normal)) < mls_followed_cosine;
+      const bool turned = vector(other->normal).dot(vector(splat.normal)) < border_cosine;
       if (weight > 0.0 && !(turned && is_past_border(point, off))) around.samples.push_back({off, vector(other->normal), weight});
     }
   }

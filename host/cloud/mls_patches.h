@@ -5,12 +5,9 @@
 namespace pointgi {
 
 /// Splats belong to one surface whose normals are nearer than this, as discs that are blended
-/// (kernels/surface/blend.cl).
+/// (kernels/surface/blend.cl): a patch bends towards such neighbours, and ends at its cell where a surface bends outwards
+/// to others (host/cloud/disc_borders.h).
 constexpr double mls_surface_cosine = 0.5;
-
-/// A patch is not trusted to follow a surface bent outwards to neighbours whose normals are farther off, 37 degrees: it
-/// ends at its cell there, as discs do (host/cloud/disc_borders.h).
-constexpr double mls_followed_cosine = 0.5;
 
 struct MlsPatches {
   PatchBends bends;        ///< one a splat
@@ -24,9 +21,8 @@ struct MlsPatches {
 /// (b(x_i)^T c - f_i)², Wendland's theta(r) = (1-r)^4 (4r+1) with the distance d_k of the k-th neighbour (Min and Kim;
 /// method.md §8). The splat moves to the foot (0, 0, c_0) and takes the gradient there as its normal, until both stay;
 /// c_3..c_5 of a fit in that frame are its bend. Its disc is then the tangent disc of the patch. Neighbours count that
-/// have its material, face its way within 60 degrees, and do not lie past its own clip.
-/// `neighbours`: k, 7 or more. Works on all cores, the same
-/// result for any number of them.
+/// have its material and face its way within 60 degrees; past its own clip, within 37. `neighbours`: k, 7 or more.
+/// Works on all cores, the same result for any number of them.
 MlsPatches fit_mls_patches(std::vector<Splat>& splats, const SplatClips& clips, unsigned neighbours);
 
 } // namespace pointgi

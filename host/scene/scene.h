@@ -225,7 +225,7 @@ struct TraversalSettings {
   double step_delta = 0.05; ///< world units; absolute_delta only
   bool fast_math = false;   ///< looser float rules; the picture is then approximate
   SurfaceForm surface = SurfaceForm::discs; ///< what splats are; no choice of the device's
-  unsigned mls_neighbours = 20;             ///< to which a patch is fitted
+  unsigned mls_neighbours = 24;             ///< to which a patch is fitted (docs/method/mls.md)
 };
 
 /// The words that a scene file has for these, each beside its meaning; every value of a type, in order.

@@ -2,6 +2,7 @@
 #include "tests/support/mesh_picture.h"
 #include "tests/support/render.h"
 #include "tests/support/scans.h"
+#include "tests/support/scene_parts.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -76,15 +77,96 @@ void compare(const Model& model, int side, Likeness& discs, Likeness& patches) {
 
 TEST_CASE("patches of scans: silhouettes of the mesh, normals nearer to it than those of blended discs, no holes") {
   const Model model = GENERATE(Model{"bunny.ply", {0.3, 0.2, 1.8}}, Model{"horse.ply", {1.5, 0.4, 1.0}},
-                               Model{"dragon_res3.ply", {0.4, 0.3, 1.8}}, Model{"dragon.ply", {0.4, 0.3, 1.8}});
+                               Model{"dragon.ply", {0.4, 0.3, 1.8}});
   if (!scan_path(model.file)) return;
   CAPTURE(model.file);
   Likeness discs, patches;
-  compare(model, 640, discs, patches);
-  WARN(model.file << ": silhouette " << 100 * patches.silhouette << " % (discs " << 100 * discs.silhouette
-                  << "), normals " << patches.angle << " degrees (" << discs.angle << "), holes " << patches.holes << " ("
-                  << discs.holes << ")");
+  compare(model, 480, discs, patches);
+  INFO("silhouette " << patches.silhouette << " (discs " << discs.silhouette << "), normals " << patches.angle << " ("
+                     << discs.angle << ") degrees, holes " << patches.holes << " (" << discs.holes << ")");
+  // Measured: 0.1 % of bunny and dragon, 0.8 % of the horse, whose discs are as far off: its thin parts.
   CHECK(patches.silhouette <= 0.01);
-  CHECK(patches.angle < discs.angle);
+  CHECK(patches.angle < 0.85 * discs.angle); // 0.66 to 0.78 measured
   CHECK(patches.holes <= discs.holes);
+}
+
+namespace {
+
+const std::string as_patches = "[traversal]\nsurface = \"mls\"\n";
+
+}
+
+TEST_CASE("mirrors and glass of patches vanish in a uniform environment, through every form") {
+  const std::string type = GENERATE("mirror", "glass"), form = GENERATE("wide", "step");
+  CAPTURE(type, form);
+  const std::string scene = head("0.0, 0.0, 4.0", "0.0, 0.0, 0.0", 36.0, 32, "[48, 48]") + environment(1.0) +
+                            material("m", type) + sphere("0.0, 0.0, 0.0", 1.0, "m", 0.1) + as_patches + "form = \"" +
+                            form + "\"\n";
+  for (const Picture& picture : {render_text(scene), trace(scene)}) {
+    // As of discs (tests/analytic/specular_test.cpp).
+    CHECK(mean(picture, "G") == Approx(1.0).epsilon(0.005));
+    CHECK(smallest(picture, "G") > 0.95);
+    CHECK(largest(picture, "G") < 1.05);
+    CHECK(mean(picture, "Specular.G") > 0.3); // the sphere covers half of the picture
+  }
+}
+
+TEST_CASE("a ball of few patches casts a round shadow, has no dark seams, and hides what a ball hides") {
+  const std::string form = GENERATE("wide", "step");
+  const std::string scene = head("0.0, 4.0, 9.0", "0.0, 0.5, 0.0", 40.0, 1, "[160, 160]\njitter = false") +
+                            "[radiosity]\nmethod = \"none\"\n[[light]]\n"
+                            "type = \"directional\"\ndirection = [0, -1, 0]\nirradiance = [1, 1, 1]\n" +
+                            material("m", "diffuse") + sphere("0.0, 2.0, 0.0", 1.0, "m", 0.25) +
+                            quad("-4.0, 0.0, -4.0", "0.0, 0.0, 8.0", "8.0, 0.0, 0.0", "m", 0.5) + as_patches +
+                            "form = \"" + form + "\"\n";
+  const Picture picture = render_text(scene);
+  const auto channel = [&](const char* name) -> const std::vector<float>& { return picture.channels.at(name); };
+  std::size_t floor = 0, wrong = 0, ball = 0, unlike = 0;
+  for (std::size_t i = 0; i < channel("A").size(); ++i) {
+    if (channel("A")[i] == 0.0f) continue;
+    const Vector3d p(channel("P.X")[i], channel("P.Y")[i], channel("P.Z")[i]),
+        n(channel("N.X")[i], channel("N.Y")[i], channel("N.Z")[i]);
+    const bool lit = channel("Direct.G")[i] > 0.0f;
+    if (p.y() > 0.9) { // the ball: lit where it faces the light
+      const Vector3d off = p - Vector3d(0.0, 2.0, 0.0);
+      ++ball;
+      // h is an eighth of the diameter: a quadratic leaves 1e-3 of the radius, and 1 degree.
+      unlike += std::abs(off.norm() - 1.0) > 2e-3 || n.normalized().dot(off.normalized()) < 0.9995;
+      if (std::abs(off.y()) > 0.05) unlike += lit != (off.y() > 0.0);
+      continue;
+    }
+    const double from_axis = std::hypot(p.x(), p.z());
+    if (std::abs(from_axis - 1.0) < 0.01) continue; // a pixel is 0.04 wide
+    ++floor;
+    wrong += lit != (from_axis > 1.0);
+  }
+  CHECK(floor > 5000);
+  CHECK(wrong == 0);
+  CHECK(ball > 1500);
+  CHECK(unlike == 0);
+}
+
+TEST_CASE("patches of an open, bent sheet end where its discs do") {
+  // A quarter of a cylinder of radius 1 from z = -1 to 1, seen from where its border is the silhouette.
+  const TemporaryFolder folder;
+  std::ofstream ply(folder.file("sheet.ply"));
+  constexpr int along = 25, around = 20;
+  constexpr double step = 1.0 / (along - 1);
+  ply << "ply\nformat ascii 1.0\nelement vertex " << along * around
+      << "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+         "property float nz\nend_header\n";
+  for (int i = 0; i < along; ++i)
+    for (int k = 0; k < around; ++k) {
+      const double turn = 0.785398 + 1.570796 * k / (around - 1);
+      ply << std::cos(turn) << " " << std::sin(turn) << " " << 2.0 * step * i - 1.0 << " " << std::cos(turn) << " "
+          << std::sin(turn) << " 0\n";
+    }
+  ply.close();
+  const std::string scene = head("0.0, 6.0, 0.001", "0.0, 0.0, 0.0", 30.0, 4, "[256, 256]") + environment(1.0) +
+                            material("m", "diffuse") + "[[cloud]]\nfile = \"" + folder.file("sheet.ply") +
+                            "\"\nmaterial = \"m\"\n";
+  const double discs = mean(render_text(scene), "A"), patches = mean(render_text(scene + as_patches), "A");
+  INFO("discs " << discs << " patches " << patches);
+  // Half a spacing around a sheet of 36 spacings by 26: 6 %. A bulge, or a border that is lost, would be as much.
+  CHECK(patches == Approx(discs).epsilon(0.01));
 }

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr unsigned neighbours = 20;
+constexpr unsigned neighbours = 24;
 
 Vector3d vector(const float v[3]) {
   return {v[0], v[1], v[2]};
