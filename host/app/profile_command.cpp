@@ -156,8 +156,10 @@ ExitCode run_profile(const ProfileOptions& options) {
   stages.finish(placed.splats.size(), "points");
 
   std::vector<TraversalVariant> valid, invalid;
-  for (const TraversalVariant& v : wanted)
+  for (TraversalVariant v : wanted) {
+    v.patches = !placed.bends.empty();
     (why_not(v, session.info()).empty() ? valid : invalid).push_back(v);
+  }
   spdlog::info("{} variants, {} rounds; the first start compiles their kernels", valid.size(), options.rounds);
   const Profile profile = measure(session, scene, placed, options, valid, stages);
 

@@ -15,6 +15,9 @@ bool wide(const Variant& v) {
 bool packets(const Variant& v) {
   return v.grouping == RayGrouping::packet;
 }
+bool wide_patches(const Variant& v) {
+  return wide(v) && v.patches;
+}
 bool sixteen_lanes(const Variant& v) {
   return wide(v) && v.lanes == 16;
 }
@@ -38,6 +41,8 @@ const std::vector<Precondition>& preconditions() {
        [](const Variant& v, const DeviceInfo&) { return v.stepping == Stepping::exact; }},
       {"packets go through the wide form", packets, [](const Variant& v, const DeviceInfo&) { return wide(v); }},
       {"packets want a work-item with vector registers of its own: a CPU device", packets,
+       [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
+      {"patches in the wide form want a work-item with vector registers of its own: a CPU device", wide_patches,
        [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
       {"16 lanes want vector registers as wide: a CPU device", sixteen_lanes,
        [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},

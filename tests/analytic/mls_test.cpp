@@ -3,6 +3,7 @@
 #include "tests/support/render.h"
 #include "tests/support/scans.h"
 #include "tests/support/scene_parts.h"
+#include "tests/support/stats_file.h"
 #include <catch2/catch.hpp>
 
 using namespace pointgi;
@@ -96,8 +97,25 @@ const std::string as_patches = "[traversal]\nsurface = \"mls\"\n";
 
 }
 
-TEST_CASE("mirrors and glass of patches vanish in a uniform environment, through every form") {
-  const std::string type = GENERATE("mirror", "glass"), form = GENERATE("wide", "step");
+TEST_CASE("photons find a ball of few patches under its own solid angle") {
+  const TemporaryFolder folder;
+  const std::string scene = head("0.0, 2.5, 5.0", "0.0, 0.6, 0.0", 40.0, 1) +
+                            "[caustics]\nphotons = 100000\n[radiosity]\nmethod = \"none\"\n[[light]]\n"
+                            "type = \"point\"\nposition = [0.5, 5.0, 1.0]\npower_w = [100, 100, 100]\n" +
+                            material("m", "diffuse") + material("s", "glass") + sphere("0.0, 0.8, 0.0", 0.7, "s", 0.15) +
+                            quad("-4.0, 0.0, -4.0", "0.0, 0.0, 8.0", "8.0, 0.0, 0.0", "m", 0.5) + as_patches;
+  render_text(scene, [&](RenderOptions& options) { options.stats_file = folder.file("stats.json"); });
+  const double sine2 = 0.7 * 0.7 / (0.5 * 0.5 + 4.2 * 4.2 + 1.0), share = 0.5 * (1.0 - std::sqrt(1.0 - sine2));
+  const nlohmann::json photons = json_of(folder.file("stats.json"))["photons"];
+  // Of the share 0.4 % is noise, four standard deviations of 110,000 photons, those that miss among them; discs of this
+  // spacing are 3 % too large.
+  CHECK(photons["power_w"]["emitted"][1].get<double>() == Approx(100.0 * share).epsilon(0.005));
+  CHECK(photons["absorbed"].get<int>() == 0);
+}
+
+TEST_CASE("mirrors and glass of patches vanish in a uniform environment, through either form") {
+  const bool glass = GENERATE(false, true);
+  const std::string type = glass ? "glass" : "mirror", form = glass ? "step" : "wide";
   CAPTURE(type, form);
   const std::string scene = head("0.0, 0.0, 4.0", "0.0, 0.0, 0.0", 36.0, 32, "[48, 48]") + environment(1.0) +
                             material("m", type) + sphere("0.0, 0.0, 0.0", 1.0, "m", 0.1) + as_patches + "form = \"" +
