@@ -1,7 +1,7 @@
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
-#include "host/lights/environment_map.h"
 #include "host/cloud/mls_patches.h"
+#include "host/lights/environment_map.h"
 #include "host/passes/build_pools.h"
 #include "host/scene/objects.h"
 #include "host/stages/prepare.h"

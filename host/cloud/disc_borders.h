@@ -23,7 +23,8 @@ struct BorderEvidence {
 ///   - at its rims;
 ///   - of a scan, at an edge that sticks out, where the two faces' planes meet: the other's plane is a mean over its
 ///     points;
-///   - of a surface bent outwards, to neighbours that it does not follow, at the bounds of its cell, where it would stick out of its neighbours' planes.
+///   - of a surface bent outwards, to neighbours that it does not follow, at the bounds of its cell, where it would
+///   stick out of its neighbours' planes.
 /// Points nearer to an edge than a tenth of their radius, or past it, move that far inside along their face.
 /// Discs beside an edge grow where they must, to reach it; their areas become those of their cells on their own face.
 /// Requires normals with their final sides, radii and areas. Sites of more than 16 points are left as they are.

@@ -5,8 +5,8 @@
 namespace pointgi {
 
 /// Splats belong to one surface whose normals are nearer than this, as discs that are blended
-/// (kernels/surface/blend.cl): a patch bends towards such neighbours, and ends at its cell where a surface bends outwards
-/// to others (host/cloud/disc_borders.h).
+/// (kernels/surface/blend.cl): a patch bends towards such neighbours, and ends at its cell where a surface bends
+/// outwards to others (host/cloud/disc_borders.h).
 constexpr double mls_surface_cosine = 0.5;
 
 struct MlsPatches {

@@ -180,7 +180,8 @@ void load_traversal(const TableReader& root, TraversalSettings& traversal) {
     traversal.surface = *word == name_of(SurfaceForm::discs) ? SurfaceForm::discs : SurfaceForm::mls;
   if (const auto neighbours = table->integer("mls_neighbours", limits::mls_neighbours)) {
     if (traversal.surface != SurfaceForm::mls)
-      table->fail("mls_neighbours", "goes with surface = \"mls\", and the surface is discs; set surface, or leave it out");
+      table->fail("mls_neighbours",
+                  "goes with surface = \"mls\", and the surface is discs; set surface, or leave it out");
     traversal.mls_neighbours = static_cast<unsigned>(*neighbours);
   }
 }

@@ -222,8 +222,8 @@ struct TraversalSettings {
   std::optional<unsigned> lanes;      ///< splats a block of the wide form, 8 or 16
   std::optional<PoolStorage> storage; ///< of the step form
   Stepping stepping = Stepping::exact;
-  double step_delta = 0.05; ///< world units; absolute_delta only
-  bool fast_math = false;   ///< looser float rules; the picture is then approximate
+  double step_delta = 0.05;                 ///< world units; absolute_delta only
+  bool fast_math = false;                   ///< looser float rules; the picture is then approximate
   SurfaceForm surface = SurfaceForm::discs; ///< what splats are; no choice of the device's
   unsigned mls_neighbours = 24;             ///< to which a patch is fitted (docs/method/mls.md)
 };

@@ -80,8 +80,8 @@ typedef struct DiscClip {
 #define CLIP_MARGIN(radius) (SEGMENT_MARGIN(radius) + 1e-7f)
 
 /* How a splat's patch of the moving-least-squares surface (HAS_MLS) stands off its disc: at x u + y v from the centre,
- * (u, v) being the tangents of the normal, by x (xx x + xy y) + yy y y along the normal. It ends where its disc does, and
- * at PATCH_HEIGHT. All 0: the disc itself. */
+ * (u, v) being the tangents of the normal, by x (xx x + xy y) + yy y y along the normal. It ends where its disc does,
+ * and at PATCH_HEIGHT. All 0: the disc itself. */
 typedef struct PatchBend {
   float xx, xy, yy; /* texel 3, bytes 0-11: 1 / root cube */
   float reserved;   /* texel 3, bytes 12-15: 0 */

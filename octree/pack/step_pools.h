@@ -35,8 +35,8 @@ StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clip
 
 /// Checks every invariant that the traversal relies on: types, child blocks inside the pool and each used once, levels,
 /// own points inside their cell and each in one leaf, Begin-End entries along the curve and closed, every leaf that a
-/// disc, or its patch, touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node that breaks
-/// one. Time O(n log n); the tests and debug builds call it.
+/// disc, or its patch, touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node
+/// that breaks one. Time O(n log n); the tests and debug builds call it.
 void verify(const StepPools& pools);
 
 } // namespace pointgi

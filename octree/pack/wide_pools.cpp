@@ -40,8 +40,8 @@ struct Range {
 class Packer {
 public:
   Packer(View<Splat> splats, const Tree& tree, const SplatClips& clips, View<PatchBend> bends, WidePools& pools)
-      : splats_(splats), tree_(tree), clips_(clips), bends_(bends), curve_(tree.options.order, tree.options.axis_bits), pools_(pools) {
-  }
+      : splats_(splats), tree_(tree), clips_(clips), bends_(bends), curve_(tree.options.order, tree.options.axis_bits),
+        pools_(pools) {}
 
   void run() {
     const TreeNode& root = tree_.nodes[0];

@@ -27,9 +27,9 @@ struct WidePools {
 };
 
 /// Packs a tree built with Listing::centres and N = 2 over the same splats, of which some end at borders, as discs or,
-/// with `bends`, as patches; `lanes` is 8 or 16. A leaf with more splats than WIDE_MAX_BLOCKS blocks hold (coincident points) is cut into nodes of its own.
-/// Works on all cores; the same pools for any number of them. Throws std::invalid_argument on another tree,
-/// std::length_error when there are more blocks than addresses.
+/// with `bends`, as patches; `lanes` is 8 or 16. A leaf with more splats than WIDE_MAX_BLOCKS blocks hold (coincident
+/// points) is cut into nodes of its own. Works on all cores; the same pools for any number of them. Throws
+/// std::invalid_argument on another tree, std::length_error when there are more blocks than addresses.
 WidePools pack_wide(View<Splat> splats, const Tree& tree, unsigned lanes, const SplatClips& clips = {},
                     View<PatchBend> bends = {});
 

@@ -102,7 +102,8 @@ TEST_CASE("photons find a ball of few patches under its own solid angle") {
   const std::string scene = head("0.0, 2.5, 5.0", "0.0, 0.6, 0.0", 40.0, 1) +
                             "[caustics]\nphotons = 100000\n[radiosity]\nmethod = \"none\"\n[[light]]\n"
                             "type = \"point\"\nposition = [0.5, 5.0, 1.0]\npower_w = [100, 100, 100]\n" +
-                            material("m", "diffuse") + material("s", "glass") + sphere("0.0, 0.8, 0.0", 0.7, "s", 0.15) +
+                            material("m", "diffuse") + material("s", "glass") +
+                            sphere("0.0, 0.8, 0.0", 0.7, "s", 0.15) +
                             quad("-4.0, 0.0, -4.0", "0.0, 0.0, 8.0", "8.0, 0.0, 0.0", "m", 0.5) + as_patches;
   render_text(scene, [&](RenderOptions& options) { options.stats_file = folder.file("stats.json"); });
   const double sine2 = 0.7 * 0.7 / (0.5 * 0.5 + 4.2 * 4.2 + 1.0), share = 0.5 * (1.0 - std::sqrt(1.0 - sine2));

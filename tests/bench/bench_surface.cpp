@@ -1,6 +1,6 @@
 /// Frames a second of scans as patches and as discs, and of Embree's rays through the same discs: the table of Min and
-/// Kim's "Real-time Global Illumination for Point Set using GPUs" (method.md §8). A frame has a ray a pixel, Phong shading
-/// with one lamp's shadows, and reflections to the second bounce. Sides take turns, medians of the rounds.
+/// Kim's "Real-time Global Illumination for Point Set using GPUs" (method.md §8). A frame has a ray a pixel, Phong
+/// shading with one lamp's shadows, and reflections to the second bounce. Sides take turns, medians of the rounds.
 ///   bench_surface [--markdown FILE] [--rounds K] [--size WxH,…] CLOUD.ply …
 #include "host/passes/ray_packets.h"
 #include "host/render/render.h"
@@ -51,8 +51,7 @@ public:
   Frames(Session& session, const std::string& cloud, SurfaceForm surface, int width, int height)
       : session_(session), scene_(scene_of(cloud, surface, width, height)),
         ready_(prepare_scene(session, scene_, false, stages_)) {
-    const IndirectRequest wanted{ready_.choice.variant, scene_,        ready_.frame,
-                                 ready_.lighting,       ready_.points, false};
+    const IndirectRequest wanted{ready_.choice.variant, scene_, ready_.frame, ready_.lighting, ready_.points, false};
     light_ = run_light_stages(session, ready_.on_device, wanted, stages_);
   }
 
@@ -196,8 +195,9 @@ int main(int argc, char** argv) {
   try {
     Session session(choose_device(""));
     std::printf("device: %s (%s)\n", session.info().name.c_str(), session.info().platform.c_str());
-    std::string table = "| scan, splats | size | `\"mls\"`, frames/s | `\"discs\"`, frames/s | Embree's rays, frames/s | "
-                        "`\"mls\"` over Embree |\n|---|---|---|---|---|---|\n";
+    std::string table =
+        "| scan, splats | size | `\"mls\"`, frames/s | `\"discs\"`, frames/s | Embree's rays, frames/s | "
+        "`\"mls\"` over Embree |\n|---|---|---|---|---|---|\n";
     std::printf("%s", table.c_str());
     for (const std::string& cloud : clouds)
       for (const std::string& word : size_words) {

@@ -57,8 +57,7 @@ struct Traced {
     return found;
   }
   std::vector<RayAnswer> closest(const std::vector<RayQuery>& rays, Backfaces backfaces = Backfaces::shade) {
-    return of_splats(
-        run<RayAnswer>("trace_closest_rays", rays.size(), rays.size(), backfaces, session().upload(rays)));
+    return of_splats(run<RayAnswer>("trace_closest_rays", rays.size(), rays.size(), backfaces, session().upload(rays)));
   }
   std::vector<RayAnswer> in_packets(const std::vector<RayQuery>& rays, Backfaces backfaces = Backfaces::shade) {
     const auto queries = session().upload(packets_of(rays));

@@ -131,8 +131,8 @@ inline std::vector<DiscClip> of_all(const SplatClips& clips, const std::vector<S
   return all;
 }
 
-/// A bend for each splat, a seventh of them flat, others so steep that they end at PATCH_HEIGHT; that of a sheet's back is its front's from
-/// behind.
+/// A bend for each splat, a seventh of them flat, others so steep that they end at PATCH_HEIGHT; that of a sheet's back
+/// is its front's from behind.
 inline PatchBends random_bends(const std::vector<Splat>& splats, unsigned seed) {
   std::mt19937 g(seed);
   std::uniform_real_distribution<float> share(-1.0f, 1.0f);
@@ -146,7 +146,8 @@ inline PatchBends random_bends(const std::vector<Splat>& splats, unsigned seed) 
     // The steepest curvature of such a form is at most |xx + yy| / 2 + |(xx - yy, xy)| / 2.
     const float most = i % 7 == 0 ? 0.0f : 2.0f * PATCH_HEIGHT / splats[i].radius, turn = 3.14159265f * share(g);
     const float mean = most * share(g), apart = (most - std::fabs(mean)) * std::fabs(share(g));
-    bends.push_back({mean + apart * std::cos(turn), 2.0f * apart * std::sin(turn), mean - apart * std::cos(turn), 0.0f});
+    bends.push_back(
+        {mean + apart * std::cos(turn), 2.0f * apart * std::sin(turn), mean - apart * std::cos(turn), 0.0f});
   }
   return bends;
 }

@@ -26,8 +26,8 @@ struct SquareCamera {
 
 /// Of each pixel's middle, row after row from the top.
 struct MeshPicture {
-  std::vector<double> depth;            ///< infinity where nothing is
-  std::vector<Eigen::Vector3d> normal;  ///< of the vertices, interpolated; unit, towards the camera
+  std::vector<double> depth;           ///< infinity where nothing is
+  std::vector<Eigen::Vector3d> normal; ///< of the vertices, interpolated; unit, towards the camera
 
   bool covers(std::size_t pixel) const { return std::isfinite(depth[pixel]); }
 };
