@@ -94,6 +94,13 @@ std::vector<RayAnswer> scan(const Patches& p, const std::vector<RayQuery>& rays,
   return session().download(answers, rays.size());
 }
 
+/// Packets of every kind.
+std::vector<RayQuery> few_bundles(const std::vector<Splat>& splats) {
+  std::vector<RayQuery> rays = bundles(splats);
+  rays.resize(240 * std::size_t{PACKET_RAYS});
+  return rays;
+}
+
 /// Of the variants those whose programs or trees for patches differ.
 std::vector<TraversalVariant> distinct_variants() {
   std::vector<TraversalVariant> distinct;
@@ -131,7 +138,7 @@ TEST_CASE("every form and grouping meets a patch where a linear scan does") {
   CAPTURE(sheets);
   const Patches p = random_patches(sheets, clipped);
   const auto rays = hard_rays(p.splats, 40'009, 23);
-  const auto in_bundles = bundles(p.splats);
+  const auto in_bundles = few_bundles(p.splats);
   const auto truth = scan(p, rays), truth_of_bundles = scan(p, in_bundles);
   CHECK(hits(truth) > rays.size() / 4);
   Patches flat = p;
@@ -164,7 +171,7 @@ TEST_CASE("every form and grouping meets a patch where a linear scan does") {
 TEST_CASE("of patches the fronts alone are found where backs are seen through") {
   const Patches p = random_patches(false, false);
   const auto rays = hard_rays(p.splats, 20'011, 29);
-  const auto in_bundles = bundles(p.splats);
+  const auto in_bundles = few_bundles(p.splats);
   const auto truth = scan(p, rays, Backfaces::see_through), of_bundles = scan(p, in_bundles, Backfaces::see_through);
   CHECK(differences(scan(p, rays), truth) > rays.size() / 10);
   for (const TraversalVariant& variant : distinct_variants()) {
