@@ -1,5 +1,6 @@
 #pragma once
 /// A splat in the root cube, as the octree's builders take it.
+#include "octree/view.h"
 #include "shared/octree_types.h"
 #include <cstddef>
 #include <cstdint>
@@ -48,6 +49,20 @@ inline std::vector<std::uint32_t> clip_of_each(const SplatClips& clips, std::siz
   for (std::size_t k = 0; k < clips.size(); ++k)
     of[clips[k].splat] = static_cast<std::uint32_t>(k);
   return of;
+}
+
+/// How the patches of a list of splats stand off their discs, one each; empty where all are discs.
+using PatchBends = std::vector<PatchBend>;
+
+static_assert(sizeof(PatchBend) == 16, "a bend is one texel");
+
+/// The bends of points that came from these splats, in the order of the points; none where there are none.
+template <class Sources>
+PatchBends bends_along(View<PatchBend> bends, const Sources& source) {
+  PatchBends along(bends.size);
+  for (std::size_t k = 0; k < along.size(); ++k)
+    along[k] = bends[source[k]];
+  return along;
 }
 
 } // namespace pointgi

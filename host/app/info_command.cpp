@@ -1,5 +1,6 @@
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
+#include "host/cloud/mls_patches.h"
 #include "host/lights/environment_map.h"
 #include "host/passes/build_pools.h"
 #include "host/scene/objects.h"
@@ -105,12 +106,16 @@ ExitCode run_info(const std::string& file) {
     print_objects(scene, splats);
   }
   const Frame frame = frame_of(cloud);
-  const std::vector<Splat> placed = place_in_cube(splats, frame);
+  std::vector<Splat> placed = place_in_cube(splats, frame);
   // No device is opened for this: the form told of is the default of CPU devices, unless the scene says.
   const TraversalVariant variant = choose_variant(scene.traversal, scene.octree, ideal_device(true)).variant;
   std::vector<std::uint32_t> id(placed.size());
   std::iota(id.begin(), id.end(), 0u);
-  const OctreeSummary octree = summary_of(build_pools(placed, variant, clips_in_cube(splats, frame, placed, id)));
+  const SplatClips clips = clips_in_cube(splats, frame, placed, id);
+  PatchBends bends;
+  if (scene.traversal.surface == SurfaceForm::mls)
+    bends = fit_mls_patches(placed, clips, scene.traversal.mls_neighbours).bends;
+  const OctreeSummary octree = summary_of(build_pools(placed, variant, clips, bends));
   std::printf("  splats      %zu\n", cloud.size());
   std::printf("  bounds      ");
   print_bounds(bounds_of(cloud, 0, cloud.size()));

@@ -106,7 +106,7 @@ void store(const ProfileOptions& options, ProfileReport& report) {
 
 Profile measure(Session& session, const Scene& scene, const PlacedSplats& placed, const ProfileOptions& options,
                 const std::vector<TraversalVariant>& valid, StageLog& stages) {
-  ProfileRequest request{scene, placed.frame, placed.splats, placed.clips, valid};
+  ProfileRequest request{scene, placed.frame, placed.splats, placed.clips, placed.bends, valid};
   request.rounds = options.rounds;
   request.seed = options.seed;
   // A quarter, for the scene's own buffers and other programs want some; on a CPU device it is the host's memory too.
@@ -156,8 +156,10 @@ ExitCode run_profile(const ProfileOptions& options) {
   stages.finish(placed.splats.size(), "points");
 
   std::vector<TraversalVariant> valid, invalid;
-  for (const TraversalVariant& v : wanted)
+  for (TraversalVariant v : wanted) {
+    v.patches = !placed.bends.empty();
     (why_not(v, session.info()).empty() ? valid : invalid).push_back(v);
+  }
   spdlog::info("{} variants, {} rounds; the first start compiles their kernels", valid.size(), options.rounds);
   const Profile profile = measure(session, scene, placed, options, valid, stages);
 

@@ -27,7 +27,8 @@ nlohmann::json variant_json(const TraversalVariant& v) {
           {"stepping", name_of(v.stepping)},
           {"grouping", name_of(v.grouping)},
           {"group", name_of(v.group)},
-          {"fast_math", v.fast_math}};
+          {"fast_math", v.fast_math},
+          {"surface", name_of(v.patches ? SurfaceForm::mls : SurfaceForm::discs)}};
 }
 
 namespace {

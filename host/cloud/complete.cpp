@@ -111,6 +111,7 @@ void complete_body(PointCloud& cloud, const Sites& sites, std::vector<float>&& d
   evidence.from_faces = from_faces;
   evidence.normals_given = signs_given;
   evidence.areas_given = sampled;
+  evidence.followed_cosine = options.followed_cosine;
   if (report.stations.size() == 1 && options.normals != NormalSource::flip) evidence.sensor = report.stations[0];
   clip_discs(cloud, sites, spacing, std::move(evidence));
 }

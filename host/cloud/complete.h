@@ -2,6 +2,7 @@
 /// From a cloud as the file has it to one with unit normals, radii and effective areas.
 #include "host/cloud/point_cloud.h"
 #include "host/cloud/strays.h"
+#include <limits>
 #include <optional>
 
 namespace pointgi {
@@ -21,6 +22,7 @@ struct CompleteOptions {
   StrayPolicy strays = StrayPolicy::drop;
   std::vector<Eigen::Vector3d> eyes; ///< camera and lamps of the scene, the file's coordinates: they see fronts
   std::optional<Eigen::Vector3d> up; ///< unit, the file's coordinates: the user's word; absent: CloudReport::up
+  double followed_cosine = std::numeric_limits<double>::infinity(); ///< of BorderEvidence
 };
 
 /// Drops points that are not finite or have radius <= 0 in the file, and strays (host/cloud/strays.h) as options.strays

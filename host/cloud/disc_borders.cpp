@@ -307,8 +307,10 @@ private:
     bent_.begin(n, radius, evidence_.normals_given);
     for (unsigned j = 0; j < count_; ++j) {
       const Sites::Points points = sites_.points(near_[j].site);
-      for (std::size_t p = 0; p < std::min<std::size_t>(points.size(), planes_a_site); ++p)
-        bent_.add(offset(j), cloud_.normal[points.first[p]].cast<double>());
+      for (std::size_t p = 0; p < std::min<std::size_t>(points.size(), planes_a_site); ++p) {
+        const Vector3d m = cloud_.normal[points.first[p]].cast<double>();
+        if (!(n.dot(m) > evidence_.followed_cosine)) bent_.add(offset(j), m);
+      }
     }
   }
   /// Ends at rims, and where the surface is bent.

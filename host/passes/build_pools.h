@@ -4,9 +4,9 @@
 
 namespace pointgi {
 
-/// Builds the tree and packs it in the variant's form. Programs of a variant whose `clips` is set go with pools that
-/// have some. Debug builds verify the pools.
-OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant& variant,
-                        const SplatClips& clips = {});
+/// Builds the tree and packs it in the variant's form. Programs of a variant whose `clips` or `patches` is set go with
+/// pools that have clips or bends. Debug builds verify the pools.
+OctreePools build_pools(const std::vector<Splat>& splats, const TraversalVariant& variant, const SplatClips& clips = {},
+                        const PatchBends& bends = {});
 
 } // namespace pointgi

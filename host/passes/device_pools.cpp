@@ -17,6 +17,13 @@ cl::Memory upload_texels(Session& session, const void* texels, std::size_t count
   return session.upload(static_cast<const OctreeNode*>(texels), count).handle; // any 16-byte texel
 }
 
+/// A point of patches as the device has it (shared/octree_types.h).
+struct BentPoint {
+  OctreePoint point;
+  PatchBend bend;
+};
+static_assert(sizeof(BentPoint) == 64, "four texels");
+
 /// `done(pool)` is called with each pool that is on the device.
 template <class Pools, class Done>
 DevicePools upload_step(Session& session, Pools& pools, PoolStorage storage, const Done& done) {
@@ -32,7 +39,7 @@ DevicePools upload_step(Session& session, Pools& pools, PoolStorage storage, con
     device.leaves = upload_texels(session, padded.data(), padded.size() / 4, false, storage);
   }
   done(pools.begin_end);
-  device.points = upload_texels(session, pools.points.data(), pools.points.size() * POINT_TEXELS, true, storage);
+  device.points = upload_points(session, pools.points, pools.bends, storage);
   return device;
 }
 
@@ -43,7 +50,7 @@ DevicePools upload_wide(Session& session, Pools& pools, const Done& done) {
   done(pools.nodes);
   device.leaves = session.upload(pools.blocks).handle;
   done(pools.blocks);
-  device.points = session.upload(pools.points).handle;
+  device.points = upload_points(session, pools.points, pools.bends, PoolStorage::buffer);
   return device;
 }
 
@@ -51,6 +58,14 @@ constexpr auto keep = [](const auto&) {};
 constexpr auto release = [](auto& pool) { std::decay_t<decltype(pool)>().swap(pool); };
 
 } // namespace
+
+cl::Memory upload_points(Session& session, View<OctreePoint> points, View<PatchBend> bends, PoolStorage storage) {
+  if (bends.size == 0) return upload_texels(session, points.data, points.size * POINT_TEXELS, true, storage);
+  Pool<BentPoint> bent(points.size);
+  for (std::size_t k = 0; k < bent.size(); ++k)
+    bent[k] = {points[k], bends[k]};
+  return upload_texels(session, bent.data(), bent.size() * sizeof(BentPoint) / 16, true, storage);
+}
 
 DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage) {
   return upload_step(session, pools, storage, keep);
@@ -77,8 +92,8 @@ DevicePools upload_pools(Session& session, const OctreePools& pools, PoolStorage
 bool images_fit(const DeviceInfo& device, const OctreePools& pools, PoolStorage storage) {
   const auto* step = std::get_if<StepPools>(&pools);
   if (step == nullptr || storage == PoolStorage::buffer) return true;
-  const std::size_t texels =
-      std::max({step->nodes.size(), step->points.size() * POINT_TEXELS, step->begin_end.size() / 4 + 1});
+  const std::size_t texels = std::max(
+      {step->nodes.size(), step->points.size() * POINT_TEXELS + step->bends.size(), step->begin_end.size() / 4 + 1});
   if (!device.images || 16 * texels > device.max_allocation_bytes) return false;
   if (storage == PoolStorage::image1d_buffer) return texels <= device.image_buffer_texels;
   const std::size_t width = std::size_t{1} << image_width_log2;

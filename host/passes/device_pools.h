@@ -16,6 +16,10 @@ struct DevicePools {
 /// Whether the device's images can hold the pools; true for buffers and for the wide form, which takes no images.
 bool images_fit(const DeviceInfo& device, const OctreePools& pools, PoolStorage storage);
 
+/// A point pool alone; with bends, one a point, those of patches.
+cl::Memory upload_points(Session& session, View<OctreePoint> points, View<PatchBend> bends,
+                         PoolStorage storage = PoolStorage::buffer);
+
 /// Throws Error(device) when images are wanted and the device has none, or too small ones; Error(memory).
 DevicePools upload_pools(Session& session, const StepPools& pools, PoolStorage storage);
 DevicePools upload_pools(Session& session, const WidePools& pools);

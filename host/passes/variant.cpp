@@ -92,16 +92,24 @@ std::string name_of(const TraversalVariant& v) {
   return v.fast_math ? name + "-fast" : name;
 }
 
+namespace {
+
+std::string surface_options(const TraversalVariant& variant) {
+  return std::string(variant.patches ? " -D HAS_MLS" : "") + (variant.clips ? " -D HAS_CLIPS" : "");
+}
+
+} // namespace
+
 std::string build_options(const TraversalVariant& variant) {
-  const char* clip_option = variant.clips ? " -D HAS_CLIPS" : "";
+  const std::string surface = surface_options(variant);
   if (variant.form == TraversalForm::wide)
-    return "-D TRAVERSAL_FORM=FORM_WIDE -D WIDE_LANES=" + std::to_string(variant.lanes) + clip_option;
+    return "-D TRAVERSAL_FORM=FORM_WIDE -D WIDE_LANES=" + std::to_string(variant.lanes) + surface;
   const char* storage = variant.storage == PoolStorage::buffer           ? "POOL_BUFFER"
                         : variant.storage == PoolStorage::image1d_buffer ? "POOL_IMAGE1D"
                                                                          : "POOL_IMAGE2D";
   std::string options = std::string("-D POOL_STORAGE=") + storage +
                         " -D OCTREE_AXIS_BITS=" + std::to_string(variant.axis_bits) +
-                        " -D POOL_WIDTH_LOG2=" + std::to_string(image_width_log2) + clip_option;
+                        " -D POOL_WIDTH_LOG2=" + std::to_string(image_width_log2) + surface;
   if (variant.stepping == Stepping::absolute_delta) options += " -D STEP_ABSOLUTE";
   return options;
 }
@@ -109,6 +117,10 @@ std::string build_options(const TraversalVariant& variant) {
 Program trace_program(const TraversalVariant& variant, Backfaces backfaces) {
   return program(variant, "traverse/trace.cl",
                  (variant.grouping == RayGrouping::packet ? " -D RAY_PACKETS" : "") + backface_options(backfaces));
+}
+
+Program scan_program(const TraversalVariant& variant, Backfaces backfaces) {
+  return {"test/brute_force.cl", backface_options(backfaces) + surface_options(variant)};
 }
 
 Program eye_rays_program(const TraversalVariant& variant, Backfaces backfaces) {

@@ -20,7 +20,8 @@ struct TraversalVariant {
   RayGrouping grouping = RayGrouping::ray;
   WorkGroup group;
   bool fast_math = false;
-  bool clips = false; ///< of the scene, not of the choice: some splats end at borders
+  bool clips = false;   ///< of the scene, not of the choice: some splats end at borders
+  bool patches = false; ///< as well: splats are patches of the moving-least-squares surface, and no discs
 };
 
 /// Tells variants apart, for people and for --filter: "step-n2-buffer-morton-leaf32-ray-8x4",
@@ -64,6 +65,8 @@ struct Program {
 /// Given rays: trace_closest_rays, trace_any_rays, trace_blended_rays; with grouping packet also
 /// trace_packets. Where backs are seen through, nearest hits are those of front sides.
 Program trace_program(const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade);
+/// The same rays by a linear scan over the variant's splats, brute_force_closest: what all others are held to.
+Program scan_program(const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade);
 /// Hits of the picture's eye rays, trace_eye_rays: a pixel a half or whole work-group, or (packets) a square of pixels
 /// a work-item.
 Program eye_rays_program(const TraversalVariant& variant, Backfaces backfaces = Backfaces::shade);

@@ -41,6 +41,8 @@ inline constexpr IntegerRange photons{0, 100'000'000};
 inline constexpr IntegerRange gather_k{1, 1024};
 inline constexpr IntegerRange leaf_capacity{1, 4096};
 inline constexpr IntegerRange octree_depth{0, 21};
+/// A quadratic has six terms, the farthest neighbour has no weight, and some lie on other faces.
+inline constexpr IntegerRange mls_neighbours{9, 64};
 
 // Lengths are squared in float on the device: 1e18 and 1e-18 leave areas of 1e36 and 1e-36, inside what float holds.
 inline constexpr NumberRange coordinate{-1e18, 1e18, false, false, "from -1e18 to 1e18"};

@@ -188,7 +188,8 @@ void load_octree(const TableReader& root, OctreeSettings& octree) {
 void load_traversal(const TableReader& root, TraversalSettings& traversal) {
   const std::optional<TableReader> table = root.table("traversal");
   if (!table) return;
-  table->allow_only({"form", "grouping", "group", "lanes", "storage", "stepping", "step_delta", "fast_math"});
+  table->allow_only({"form", "grouping", "group", "lanes", "storage", "stepping", "step_delta", "fast_math", "surface",
+                     "mls_neighbours"});
   load_choice(*table, "form", traversal_forms(), traversal.form);
   load_choice(*table, "grouping", ray_groupings(), traversal.grouping);
   load_choice(*table, "group", work_groups(), traversal.group);
@@ -201,6 +202,14 @@ void load_traversal(const TableReader& root, TraversalSettings& traversal) {
     traversal.stepping = *stepping == name_of(Stepping::exact) ? Stepping::exact : Stepping::absolute_delta;
   if (const auto delta = table->number("step_delta", limits::length)) traversal.step_delta = *delta;
   if (const auto fast = table->boolean("fast_math")) traversal.fast_math = *fast;
+  if (const auto word = table->choice("surface", {name_of(SurfaceForm::discs), name_of(SurfaceForm::mls)}))
+    traversal.surface = *word == name_of(SurfaceForm::discs) ? SurfaceForm::discs : SurfaceForm::mls;
+  if (const auto neighbours = table->integer("mls_neighbours", limits::mls_neighbours)) {
+    if (traversal.surface != SurfaceForm::mls)
+      table->fail("mls_neighbours",
+                  "goes with surface = \"mls\", and the surface is discs; set surface, or leave it out");
+    traversal.mls_neighbours = static_cast<unsigned>(*neighbours);
+  }
 }
 
 } // namespace pointgi

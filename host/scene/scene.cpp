@@ -50,6 +50,10 @@ const char* name_of(RayGrouping grouping) {
   return grouping == RayGrouping::ray ? "ray" : "packet";
 }
 
+const char* name_of(SurfaceForm surface) {
+  return surface == SurfaceForm::discs ? "discs" : "mls";
+}
+
 std::string name_of(WorkGroup group) {
   return std::to_string(group.x) + "x" + std::to_string(group.y);
 }

@@ -219,6 +219,11 @@ inline bool operator==(WorkGroup a, WorkGroup b) {
   return a.x == b.x && a.y == b.y;
 }
 
+enum class SurfaceForm {
+  discs, ///< flat
+  mls    ///< patches of the moving-least-squares surface (host/cloud/mls_patches.h)
+};
+
 /// Kernel variant of the traversal. What is left open is chosen for the device; what goes with what is told by
 /// host/tune/variant_list.h.
 struct TraversalSettings {
@@ -228,8 +233,10 @@ struct TraversalSettings {
   std::optional<unsigned> lanes;      ///< splats a block of the wide form, 8 or 16
   std::optional<PoolStorage> storage; ///< of the step form
   Stepping stepping = Stepping::exact;
-  double step_delta = 0.05; ///< world units; absolute_delta only
-  bool fast_math = false;   ///< looser float rules; the picture is then approximate
+  double step_delta = 0.05;                 ///< world units; absolute_delta only
+  bool fast_math = false;                   ///< looser float rules; the picture is then approximate
+  SurfaceForm surface = SurfaceForm::discs; ///< what splats are; no choice of the device's
+  unsigned mls_neighbours = 24;             ///< to which a patch is fitted (docs/method/mls.md)
 };
 
 /// The words that a scene file has for these, each beside its meaning; every value of a type, in order.
@@ -238,6 +245,7 @@ const char* name_of(TraversalForm form);
 const char* name_of(PoolStorage storage);
 const char* name_of(Stepping stepping);
 const char* name_of(RayGrouping grouping);
+const char* name_of(SurfaceForm surface);
 std::string name_of(WorkGroup group); ///< "8x4"
 const std::vector<PointOrder>& point_orders();
 const std::vector<TraversalForm>& traversal_forms();

@@ -1,4 +1,5 @@
 #include "host/scene/splats.h"
+#include "host/cloud/mls_patches.h"
 #include "host/cloud/readers/readers.h"
 #include "host/error.h"
 #include "host/image/srgb.h"
@@ -88,6 +89,7 @@ void place(PointCloud& cloud, const CloudSettings& settings, const CloudPose& po
 CompleteOptions completion_of(const CloudSettings& settings, const Scene& scene) {
   const CloudPose pose(settings);
   CompleteOptions options{settings.normals, settings.radii, settings.viewpoint, settings.strays, {}, {}};
+  if (scene.traversal.surface == SurfaceForm::mls) options.followed_cosine = mls_surface_cosine;
   if (scene.camera.chosen) options.eyes.push_back(pose.to_cloud(scene.camera.position));
   for (const LightSettings& light : scene.lights)
     if (!light.is_far && light.type == LightType::point) options.eyes.push_back(pose.to_cloud(light.vector));

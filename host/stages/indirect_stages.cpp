@@ -118,10 +118,14 @@ void require_possible_radiosity(const Scene& scene) {
 }
 
 std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
-                                                 StageLog& stages) {
+                                                 bool patches, StageLog& stages) {
   if (!lighting.has_specular()) {
     stages.skip("normals", "no specular material");
     return std::nullopt;
+  }
+  if (patches) {
+    stages.skip("normals", "patches of the surface have normals of their own");
+    return session.upload(std::vector<cl_float4>(1));
   }
   stages.start("normals");
   const auto slopes = fit_normal_field(points, [&](const Splat& splat) {

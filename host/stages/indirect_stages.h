@@ -82,9 +82,10 @@ std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat>
 std::string reason_against_radiosity(const IndirectRequest& request);
 
 /// The normal field of the specular and glossy splats, as the device takes it (kernels/lib/pools.cl): the stage
-/// `normals`; absent where there are none, and the stage is skipped.
+/// `normals`; absent where there are none, and the stage is skipped. So it is where splats are `patches`, whose kernels
+/// take a field and read none.
 std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
-                                                 StageLog& stages);
+                                                 bool patches, StageLog& stages);
 
 /// Refuses settings of [radiosity] that do not go together, before the work. Throws Error(input).
 void require_possible_radiosity(const Scene& scene);

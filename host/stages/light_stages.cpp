@@ -47,7 +47,7 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
   Caustics caustics;
   IndirectRequest wanted = request;
   const auto send_photons = [&] {
-    light.normal_field = normal_field_of(session, request.lighting, request.points, stages);
+    light.normal_field = normal_field_of(session, request.lighting, request.points, request.variant.patches, stages);
     caustics = run_photon_stage(session, pools, request, light.normal_field ? &*light.normal_field : nullptr, stages);
   };
   const bool photons_first = settings.feedback && request.lighting.has_specular();

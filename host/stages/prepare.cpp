@@ -1,5 +1,6 @@
 #include "host/stages/prepare.h"
 #include "host/cloud/input_file.h"
+#include "host/cloud/mls_patches.h"
 #include "host/run.h"
 #include "host/scene/sheet_sides.h"
 #include "host/view/default_light.h"
@@ -76,6 +77,12 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
       sheets > 0)
     log_info("{} splats are two-sided: each side is a point of its own", sheets);
   placed.clips = clips_in_cube(world, placed.frame, placed.splats, placed.id);
+  if (scene.traversal.surface == SurfaceForm::mls) {
+    MlsPatches mls = fit_mls_patches(placed.splats, placed.clips, scene.traversal.mls_neighbours);
+    log_info("surface mls: {} patches; {} planes, whose neighbours allow no more; {} discs as they were", mls.patches,
+             mls.planes, mls.discs);
+    placed.bends = std::move(mls.bends);
+  }
   return placed;
 }
 

@@ -45,8 +45,9 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   stages.start("octree");
   ready.frame = placed.frame;
   ready.choice = choose_for(scene, session.info());
-  OctreePools pools = build_pools(placed.splats, ready.choice.variant, placed.clips);
+  OctreePools pools = build_pools(placed.splats, ready.choice.variant, placed.clips, placed.bends);
   ready.choice.variant.clips = !placed.clips.empty();
+  ready.choice.variant.patches = !placed.bends.empty();
   const SplatClips clips = clips_of(pools);
   std::vector<Splat>().swap(placed.splats); // assigning {} would keep its memory
   ready.octree = summary_of(pools);

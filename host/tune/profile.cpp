@@ -107,10 +107,12 @@ private:
   void list_variants() {
     reference_.max_depth = request_.scene.octree.max_depth;
     reference_.clips = !request_.clips.empty();
+    reference_.patches = !request_.bends.empty();
     std::vector<TraversalVariant> all{reference_};
     for (TraversalVariant v : request_.variants) {
       v.max_depth = reference_.max_depth;
       v.clips = reference_.clips;
+      v.patches = reference_.patches;
       if (name_of(v) != name_of(reference_)) all.push_back(v);
     }
     std::map<std::string, std::size_t> launch_of, group_of;

@@ -26,6 +26,7 @@ struct ProfileRequest {
   const Frame& frame;
   const std::vector<Splat>& splats;
   const SplatClips& clips;                ///< of these splats
+  const PatchBends& bends;                ///< as well; empty where they are discs
   std::vector<TraversalVariant> variants; ///< the reference is measured whether it is among them or not
   int rounds = 5;                         ///< timed ones; one more before them warms up
   unsigned seed = 1;

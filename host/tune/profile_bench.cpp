@@ -35,7 +35,7 @@ ProfileBench::ProfileBench(Session& session, const ProfileRequest& request) : se
 
 ProfiledPools ProfileBench::load(const TraversalVariant& variant) {
   if (last_key_ != tree_key(variant)) {
-    last_pools_ = build_pools(request_.splats, variant, request_.clips);
+    last_pools_ = build_pools(request_.splats, variant, request_.clips, request_.bends);
     auto tree = std::make_shared<ProfiledTree>();
     tree->source.assign(source_of(last_pools_).begin(), source_of(last_pools_).end());
     tree->lighting = device_lighting(request_.scene, request_.frame, points_of(last_pools_), clips_of(last_pools_));
@@ -152,9 +152,10 @@ Differences ProfileBench::launch_and_compare(ProfiledKernel kernel, const Traver
 
 void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
   const std::size_t splats = request_.splats.size();
-  const auto points = session_.upload(request_.splats);
+  const cl::Memory points = upload_points(session_, request_.splats, request_.bends);
   const bool clipped = !request_.clips.empty();
-  cl::Kernel scan = session_.kernel("test/brute_force.cl", clipped ? "-D HAS_CLIPS" : "", "brute_force_closest");
+  const Program program = scan_program(reference);
+  cl::Kernel scan = session_.kernel(program.file, program.options, "brute_force_closest");
   std::vector<DiscClip> clip_of_each(clipped ? splats : 0); // zero cuts nothing off
   for (const ClippedSplat& c : request_.clips)
     clip_of_each[c.splat] = c.clip;

@@ -47,6 +47,7 @@ TraversalVariant merged(const TraversalSettings& t, const OctreeSettings& o, con
   v.grouping = t.grouping.value_or(layer.grouping);
   v.group = t.group.value_or(layer.group);
   v.fast_math = t.fast_math;
+  v.patches = t.surface == SurfaceForm::mls;
   return v;
 }
 

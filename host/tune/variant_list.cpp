@@ -15,6 +15,9 @@ bool wide(const Variant& v) {
 bool packets(const Variant& v) {
   return v.grouping == RayGrouping::packet;
 }
+bool wide_patches(const Variant& v) {
+  return wide(v) && v.patches;
+}
 bool sixteen_lanes(const Variant& v) {
   return wide(v) && v.lanes == 16;
 }
@@ -38,6 +41,8 @@ const std::vector<Precondition>& preconditions() {
        [](const Variant& v, const DeviceInfo&) { return v.stepping == Stepping::exact; }},
       {"packets go through the wide form", packets, [](const Variant& v, const DeviceInfo&) { return wide(v); }},
       {"packets want a work-item with vector registers of its own: a CPU device", packets,
+       [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
+      {"patches in the wide form want a work-item with vector registers of its own: a CPU device", wide_patches,
        [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
       {"16 lanes want vector registers as wide: a CPU device", sixteen_lanes,
        [](const Variant&, const DeviceInfo& d) { return d.is_cpu; }},
@@ -168,16 +173,24 @@ std::vector<ProgramUse> all_programs() {
   const auto usual = [](const TraversalVariant& v) {
     TraversalVariant plain = plain_variant(v.form);
     plain.clips = v.clips;
+    plain.patches = v.patches;
     return build_options(v) == build_options(plain) && !v.fast_math;
   };
   for (std::size_t i = 0, count = variants.size(); i < count; ++i)
-    if (usual(variants[i])) { // with borders the usual walks stand for all
-      variants.push_back(variants[i]);
-      variants.back().clips = true;
-    }
-  std::vector<ProgramUse> uses{{{"test/brute_force.cl", ""}, true, true},
-                               {{"test/brute_force.cl", "-D FRONTS_ONLY"}, true, true},
-                               {{"test/brute_force.cl", "-D HAS_CLIPS"}, true, true}};
+    if (usual(variants[i])) // with borders and with patches the usual walks stand for all
+      for (unsigned surface = 1; surface < 4; ++surface) {
+        variants.push_back(variants[i]);
+        variants.back().clips = (surface & 1u) != 0;
+        variants.back().patches = (surface & 2u) != 0;
+      }
+  std::vector<ProgramUse> uses;
+  TraversalVariant scanned = reference_variant();
+  for (unsigned surface = 0; surface < 4; ++surface) {
+    scanned.clips = (surface & 1u) != 0;
+    scanned.patches = (surface & 2u) != 0;
+    for (const Backfaces backfaces : {Backfaces::shade, Backfaces::see_through})
+      uses.push_back({scan_program(scanned, backfaces), true, true});
+  }
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl",
                            "radiosity/gather/receive_picked.cl"})

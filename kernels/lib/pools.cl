@@ -61,6 +61,13 @@ static inline uint pool_component(uint4 texel, uint i) {
 #endif
 #endif
 
+#ifdef HAS_MLS
+/* A point's PatchBend. */
+#define pool_bend(i) pool_point_texel(POINT_TEXELS * (i) + 3u)
+#else
+#define pool_bend(i) (float4)(0.0f)
+#endif
+
 #ifdef HAS_RADIOSITY
 /* Beside the points, what other surfaces send them: irradiance_pool[i].xyz [W/m2, scaled as RenderParams]. */
 #define LIT_ARGS OCTREE_ARGS, irradiance_pool

@@ -74,7 +74,7 @@ static inline float3 near_emitter(POOL_PARAMS, const Surface* s, const __global 
   const Hit hit = trace_closest_from(POOL_ARGS, ray, ends);
   if (hit.splat == NO_SPLAT)
     return (float3)(0.0f);
-  const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
+  const float4 normal = normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat);
   const __global Material* material = materials + (uint)normal.w;
   const float cosine_at_light = -dot3(normal.xyz, ray.direction);
   if (cosine_at_light <= 0.0f || material->emitter_density <= 0.0f)

@@ -33,8 +33,13 @@ typedef struct OctreeNode {
  * Where a splat is clipped (HAS_CLIPS) the pool begins with an entry for each point: where the CLIP_WORDS words of its
  * DiscClip begin in this pool, or 0; the clips follow, then the leaves. */
 
-/* Point pool: 44 bytes a point in three 16-byte texels; the twelfth scalar carries the effective area. */
+/* Point pool: 44 bytes a point in three 16-byte texels; the twelfth scalar carries the effective area. Of patches
+ * (HAS_MLS) a PatchBend follows as a fourth. */
+#ifdef HAS_MLS
+#define POINT_TEXELS 4
+#else
 #define POINT_TEXELS 3
+#endif
 typedef struct OctreePoint {
   float position[3]; /* texel 0, bytes 0-11: root cube */
   float radius;      /* texel 0, bytes 12-15: splat radius, root cube */
@@ -74,6 +79,20 @@ typedef struct DiscClip {
  * as a ray starts behind its surface, and what the border's own place is rounded by. radius: of the disc. */
 #define CLIP_MARGIN(radius) (SEGMENT_MARGIN(radius) + 1e-7f)
 
+/* How a splat's patch of the moving-least-squares surface (HAS_MLS) stands off its disc: at x u + y v from the centre,
+ * (u, v) being the tangents of the normal, by x (xx x + xy y) + yy y y along the normal. It ends where its disc does,
+ * and at PATCH_HEIGHT. All 0: the disc itself. */
+typedef struct PatchBend {
+  float xx, xy, yy; /* texel 3, bytes 0-11: 1 / root cube */
+  float reserved;   /* texel 3, bytes 12-15: 0 */
+} PatchBend;
+
+/* How far off its disc a patch reaches, in radii of the disc: half of its box's height. */
+#define PATCH_HEIGHT 0.5f
+/* Square of the radius of a ball about the centre that holds every patch, in radii of the disc: 1 + PATCH_HEIGHT
+ * squared, and rounding. */
+#define PATCH_REACH2 1.2501f
+
 /* The wide form of the same octree (N = 2): a node keeps the boxes of what its children really hold, radii included, so
  * a splat lies in one leaf only and no cell is listed. Boxes are widened by a little more than a hit's rounding. */
 #define WIDE_CHILDREN 8
@@ -91,8 +110,16 @@ typedef struct WideNode {
  *   first point in the point pool, the others follow it;  7L+1 a bit for each lane that is a side of a sheet;
  *   7L+2 a bit for each lane whose splat is clipped;  7L+3 the word of the pool at which their DiscClips begin, lane
  *   after lane;  7L+4 a bit for each lane whose splat is flat;  7L+5..8L-1 zero
- * The clips stand behind all blocks. */
-#define WIDE_BLOCK_WORDS(lanes) (8 * (lanes))
+ * Of patches 8L..11L-1 follow: xx, xy and yy of their PatchBends. The clips stand behind all blocks. */
+#define WIDE_DISC_BLOCK_WORDS(lanes) (8 * (lanes))
+#define WIDE_PATCH_BLOCK_WORDS(lanes) (11 * (lanes))
+#ifdef __OPENCL_VERSION__ /* on the host the pools say which (octree/pack/wide_pools.h) */
+#ifdef HAS_MLS
+#define WIDE_BLOCK_WORDS WIDE_PATCH_BLOCK_WORDS
+#else
+#define WIDE_BLOCK_WORDS WIDE_DISC_BLOCK_WORDS
+#endif
+#endif
 #define WIDE_CENTRE(lanes, axis) ((axis) * (lanes))
 #define WIDE_RADIUS(lanes) (3 * (lanes))
 #define WIDE_NORMAL(lanes, axis) ((4 + (axis)) * (lanes))
@@ -101,6 +128,7 @@ typedef struct WideNode {
 #define WIDE_CLIPPED(lanes) (7 * (lanes) + 2)
 #define WIDE_CLIPS(lanes) (7 * (lanes) + 3)
 #define WIDE_FLAT(lanes) (7 * (lanes) + 4)
+#define WIDE_BEND(lanes, term) ((8 + (term)) * (lanes))
 
 /* Deepest wide tree that a traversal's stack holds: seven waiting siblings a level. */
 #define WIDE_MAX_DEPTH 27

@@ -1,10 +1,11 @@
-/* Overlapping discs near the first hit become one smooth surface: colour, normal and depth are means with a weight that
- * falls to zero at a disc's rim, or seams would show (method.md section 6). Colour and the light that is stored with the
+/* Overlapping discs, or patches, near the first hit become one smooth surface: colour, normal and depth are means with a
+ * weight that falls to zero at a disc's rim, or seams would show (method.md section 6). Colour and the light that is stored with the
  * points are means over the discs of the first one's material alone: those of a mirror or a lamp are black, and would
  * darken what is beside it. */
 #include "lib/pools.cl"
 #include "lib/ray.cl"
 #include "surface/disc.cl"
+#include "surface/meeting.cl"
 
 /* A bent surface's discs are clipped where they would stick out of it (host/cloud/disc_borders.h): they are not met there,
  * and their colour, light and normal reach as far as ever, or their borders would show. A flat disc's do end. */
@@ -61,7 +62,11 @@ typedef struct Blend {
 #endif
 } Blend;
 
-#ifdef HAS_SPECULAR
+#if defined(HAS_SPECULAR) && !defined(HAS_MLS) /* the normals of patches change of themselves */
+#define FIELD_NORMALS
+#endif
+
+#ifdef FIELD_NORMALS
 /* A splat's own normal changes over its disc (method.md section 6). */
 static inline float3 field_normal(POOL_PARAMS, Ray ray, uint splat, float t, float3 normal) {
   const float4 f = field_pool[splat];
@@ -73,25 +78,24 @@ static inline float3 field_normal(POOL_PARAMS, Ray ray, uint splat, float t, flo
 }
 #endif
 
-/* `texel`: the disc's normal and material. */
-static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t, float q, float4 texel, float3 albedo) {
-  float3 normal = texel.xyz;
+static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, Meeting m, float3 albedo) {
+  float3 normal = m.normal.xyz;
   if (dot3(normal, b->normal_of_first) <= BLEND_COSINE)
     return;
-  const float behind = fabs(t - b->t_first); /* in front is what was clipped off */
+  const float behind = fabs(m.t - b->t_first); /* in front is what was clipped off */
 #ifdef HAS_CLIPS
   /* Of two discs of which one is flat, the one behind the other is another surface. */
-  if ((b->flat || IS_FLAT(texel.w)) && behind * fabs(dot3(normal, ray.direction)) > FLAT_HEIGHT)
+  if ((b->flat || IS_FLAT(m.normal.w)) && behind * fabs(dot3(normal, ray.direction)) > FLAT_HEIGHT)
     return;
 #endif
   /* A tiny floor keeps a lone disc visible out to its very rim. */
-  const float rim = fmax(1.0f - q, 1e-3f);
+  const float rim = fmax(1.0f - m.q, 1e-3f);
   const float depth = 1.0f - behind / (b->t_end - b->t_first);
-  const float w = rim * rim * depth, of_material = (uint)texel.w == b->material ? w : 0.0f;
+  const float w = rim * rim * depth, of_material = (uint)m.normal.w == b->material ? w : 0.0f;
   b->weight += w;
   b->weight_of_material += of_material;
-#ifdef HAS_SPECULAR
-  normal = field_normal(POOL_ARGS, ray, splat, t, normal);
+#ifdef FIELD_NORMALS
+  normal = field_normal(POOL_ARGS, ray, splat, m.t, normal);
 #endif
   b->normal += w * normal;
   b->albedo += of_material * albedo;
@@ -101,17 +105,27 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, float t
 #ifdef HAS_CAUSTICS
   b->caustic += of_material * caustic_pool[splat];
 #endif
-  b->t += w * t;
+  b->t += w * m.t;
 }
 
-/* Begins with the disc hit first, `splat`, whose texels are given; the caller adds the others. */
-static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float4 centre, float4 normal, float3 albedo) {
-  /* No second judgement of whether the ray meets the disc: one that went on from a surface before it (hit_behind) did so
+/* Begins with the splat hit first, `first`; the caller adds the others. */
+static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, Hit first) {
+  const float4 centre = pool_point_texel(POINT_TEXELS * first.splat);
+  Meeting m;
+  m.normal = pool_point_texel(POINT_TEXELS * first.splat + 1u);
+  /* No second judgement of whether the ray meets the splat: one that went on from a surface before it (hit_behind) did so
    * from another origin, and at the very rim rounding may tell the two apart. */
+#ifdef HAS_MLS
+  m.t = first.t;
+  m.normal.xyz = patch_normal_at(centre, m.normal.xyz, pool_bend(first.splat),
+                                 fma((float3)(m.t), ray.direction, ray.origin - centre.xyz), &m.q);
+  m.q = fmin(m.q, 1.0f);
+#else
   float distance2;
-  const float t = ray_plane(ray.origin, ray.direction, centre, normal.xyz, &distance2);
-  const float q = fmin(distance2 / (centre.w * centre.w), 1.0f);
-  b->normal_of_first = normal.xyz;
+  m.t = ray_plane(ray.origin, ray.direction, centre, m.normal.xyz, &distance2);
+  m.q = fmin(distance2 / (centre.w * centre.w), 1.0f);
+#endif
+  b->normal_of_first = m.normal.xyz;
   b->normal = b->albedo = (float3)(0.0f);
 #ifdef HAS_RADIOSITY
   b->irradiance = (float3)(0.0f);
@@ -120,17 +134,17 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, uint splat, float
   b->caustic = (float4)(0.0f);
 #endif
   b->weight = b->weight_of_material = b->t = 0.0f;
-  b->t_first = t;
+  b->t_first = m.t;
   /* At least a few float steps, so that the window is never empty. */
-  b->t_end = t + fmax(BLEND_DEPTH * centre.w, 1e-6f * t);
+  b->t_end = m.t + fmax(BLEND_DEPTH * centre.w, 1e-6f * m.t);
   b->radius = centre.w;
-  b->splat = splat;
-  b->material = (uint)normal.w;
+  b->splat = first.splat;
+  b->material = (uint)m.normal.w;
 #ifdef HAS_CLIPS
-  b->flat = IS_FLAT(normal.w);
-  b->t_begin = fmax(ray.t_min, t - (b->t_end - t));
+  b->flat = IS_FLAT(m.normal.w);
+  b->t_begin = fmax(ray.t_min, m.t - (b->t_end - m.t));
 #endif
-  blend_add(POOL_ARGS, b, ray, splat, t, q, normal, albedo);
+  blend_add(POOL_ARGS, b, ray, first.splat, m, pool_point_texel(POINT_TEXELS * first.splat + 2u).xyz);
 }
 
 static inline void blend_end(const Blend* b, Ray ray, Surface* s) {

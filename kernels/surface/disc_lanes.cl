@@ -6,34 +6,27 @@
 #include "surface/clip.cl"
 #include "surface/disc.cl"
 
-/* What meet says of each disc of a block. */
+/* What a ray finds on each splat of a block: a Meeting (kernels/surface/meeting.cl) in lanes. */
 typedef struct BlockHits {
   lanes_f t, q, radius, nx, ny, nz;
-  lanes_i inside; /* the ray meets the disc */
+  lanes_i inside; /* the ray meets the splat */
   uint first;     /* index of lane 0 in the point pool */
   uint sheets;    /* bit k: lane k is a side of a sheet */
 #ifdef HAS_CLIPS
   uint flat; /* bit k: lane k is flat */
 #endif
+#ifdef HAS_MLS
+  bool more; /* some patch is met twice */
+#endif
 } BlockHits;
 
-/* meet in lanes, bit-identical. */
-static inline BlockHits meet_lanes(const __global float* block, float3 origin, float3 direction) {
+/* What is known of the splats before a ray is. */
+static inline BlockHits block_of_discs(const __global float* block) {
   BlockHits h;
-  const lanes_f cx = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - origin.x;
-  const lanes_f cy = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - origin.y;
-  const lanes_f cz = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 2)) - origin.z;
   h.radius = load_lanes(block + WIDE_RADIUS(WIDE_LANES));
   h.nx = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 0));
   h.ny = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 1));
   h.nz = load_lanes(block + WIDE_NORMAL(WIDE_LANES, 2));
-  h.t = fma(h.nx, cx, fma(h.ny, cy, h.nz * cz)) /
-        fma(h.nx, (lanes_f)(direction.x), fma(h.ny, (lanes_f)(direction.y), h.nz * direction.z));
-  const lanes_f ox = fma(h.t, (lanes_f)(direction.x), -cx), oy = fma(h.t, (lanes_f)(direction.y), -cy),
-                oz = fma(h.t, (lanes_f)(direction.z), -cz);
-  const lanes_f distance2 = fma(ox, ox, fma(oy, oy, oz * oz)), r2 = h.radius * h.radius;
-  h.q = distance2 / r2;
-  h.inside = (distance2 <= r2) & (h.radius > 0.0f);
   h.first = as_uint(block[WIDE_FIRST(WIDE_LANES)]);
   h.sheets = as_uint(block[WIDE_SHEETS(WIDE_LANES)]);
 #ifdef HAS_CLIPS
@@ -42,7 +35,36 @@ static inline BlockHits meet_lanes(const __global float* block, float3 origin, f
   return h;
 }
 
-/* Cosines of the discs' normals with a ray: dot3, bit-identical. */
+/* meet in lanes, bit-identical. */
+static inline BlockHits meet_lanes(const __global float* block, float3 origin, float3 direction) {
+  BlockHits h = block_of_discs(block);
+  const lanes_f cx = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 0)) - origin.x;
+  const lanes_f cy = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 1)) - origin.y;
+  const lanes_f cz = load_lanes(block + WIDE_CENTRE(WIDE_LANES, 2)) - origin.z;
+  h.t = fma(h.nx, cx, fma(h.ny, cy, h.nz * cz)) /
+        fma(h.nx, (lanes_f)(direction.x), fma(h.ny, (lanes_f)(direction.y), h.nz * direction.z));
+  const lanes_f ox = fma(h.t, (lanes_f)(direction.x), -cx), oy = fma(h.t, (lanes_f)(direction.y), -cy),
+                oz = fma(h.t, (lanes_f)(direction.z), -cz);
+  const lanes_f distance2 = fma(ox, ox, fma(oy, oy, oz * oz)), r2 = h.radius * h.radius;
+  h.q = distance2 / r2;
+  h.inside = (distance2 <= r2) & (h.radius > 0.0f);
+  return h;
+}
+
+/* Runs `body` for what a ray finds on the splats of a block, `h`: once, and of patches that are met twice once more. */
+#ifndef HAS_MLS /* else kernels/surface/mls_lanes.cl, as the two macros that follow */
+#define FOR_HITS_OF_BLOCK(block, ray, h, body)                                     \
+  {                                                                                \
+    const BlockHits h = meet_lanes(block, (ray).origin, (ray).direction);          \
+    body                                                                           \
+  }
+
+/* KEPT_NORMAL: the surface's normal and the splat's material at the hit in a lane, which is point i. */
+#define KEEP_NORMALS(h, kept)
+#define KEPT_NORMAL(kept, lane, i) pool_point_texel(POINT_TEXELS * (i) + 1u)
+#endif
+
+/* Cosines of the splats' normals with a ray: dot3, bit-identical. */
 static inline lanes_f cosines_of_lanes(const BlockHits* h, float3 direction) {
   return fma(h->nx, (lanes_f)(direction.x), fma(h->ny, (lanes_f)(direction.y), h->nz * direction.z));
 }

@@ -1,6 +1,9 @@
 /* kernels/surface/own_surface.cl for the discs of a block that a ray meets. */
 #include "lib/pools.cl"
 #include "surface/disc_lanes.cl"
+#ifdef HAS_MLS
+#include "surface/mls_lanes.cl"
+#endif
 #include "surface/own_surface.cl"
 
 static inline lanes_i sheet_lanes(const BlockHits* h) { return (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u; }
@@ -70,10 +73,11 @@ static inline lanes_i lanes_of_origin(POOL_PARAMS, OcclusionEnds ends, float3 di
   float t_of[WIDE_LANES];
   uint belong = 0u; /* bit k: lane k does */
   store_lanes(select((lanes_f)(INFINITY), h->t, met), t_of);
+  KEEP_NORMALS(h, normal_of);
   for (uint lane = 0u; lane < WIDE_LANES; ++lane)
     if (t_of[lane] < INFINITY) {
-      const uint i = POINT_TEXELS * (h->first + lane);
-      if (belongs_to_origin(ends, direction, t_of[lane], pool_point_texel(i).w, pool_point_texel(i + 1u)))
+      const uint i = h->first + lane;
+      if (belongs_to_origin(ends, direction, t_of[lane], pool_point_texel(POINT_TEXELS * i).w, KEPT_NORMAL(normal_of, lane, i)))
         belong |= 1u << lane;
     }
   return (((lanes_u)(belong) >> LANE_NUMBERS) & 1u) != 0u;

@@ -1,11 +1,13 @@
 /* The truth beside every traversal: each ray against each splat of the pool, without the octree. For tests.
  * NDRange: 1-D, one work-item a ray, padded. answers[i] = nearest hit of rays[i], ties to the lowest index; for
- * FRONTS_ONLY as for the octree (kernels/surface/disc.cl); for HAS_CLIPS splat i has clips[i];
+ * FRONTS_ONLY as for the octree (kernels/surface/disc.cl); for HAS_CLIPS splat i has clips[i], for HAS_MLS a
+ * PatchBend behind each point;
  * brute_force_closest_from of those that do not belong to the surface which it leaves, surfaces[i] = (normal, radius). */
 #include "lib/pools.cl"
 #include "lib/ray.cl"
 #include "surface/clip.cl"
 #include "surface/disc.cl"
+#include "surface/meeting.cl"
 #include "surface/own_surface.cl"
 
 #ifdef HAS_CLIPS
@@ -24,15 +26,14 @@ static inline RayAnswer nearest_of_all(const __global float4* points, uint point
   RayAnswer best = {ray->t_max, NO_SPLAT};
   for (uint k = 0u; k < point_count; ++k) {
     const float4 centre = points[POINT_TEXELS * k];
-    const float4 normal = points[POINT_TEXELS * k + 1u];
-    float q;
-    const float t = meet(origin, direction, centre, normal.xyz, &q);
-    if (t > ray->t_min && t < best.t && SIDE_COUNTS(dot3(normal.xyz, direction)) &&
-        !(leaves && belongs_to_origin(ends, direction, t, centre.w, normal)) &&
-        !IS_CUT(k, fma((float3)(t), direction, origin - centre.xyz))) {
-      best.t = t;
-      best.splat = k;
-    }
+    FOR_MEETINGS(m, origin, direction, centre, points[POINT_TEXELS * k + 1u], points[POINT_TEXELS * k + 3u], {
+      if (m.t > ray->t_min && m.t < best.t && SIDE_COUNTS(dot3(m.normal.xyz, direction)) &&
+          !(leaves && belongs_to_origin(ends, direction, m.t, centre.w, m.normal)) &&
+          !IS_CUT(k, fma((float3)(m.t), direction, origin - centre.xyz))) {
+        best.t = m.t;
+        best.splat = k;
+      }
+    })
   }
   return best;
 }

@@ -123,15 +123,14 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   walk_start(POOL_ARGS, &walk, ray, t_enter);
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
-      float q;
-      const float3 normal = pool_point_texel(POINT_TEXELS * i + 1u).xyz;
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
-      const float t = meet(ray.origin, ray.direction, centre, normal, &q);
-      if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
-          SIDE_COUNTS(dot3(normal, ray.direction)) && !IS_CUT(i, ray, t, centre)) {
-        best.t = t;
-        best.splat = i;
-      }
+      FOR_MEETINGS(m, ray.origin, ray.direction, centre, pool_point_texel(POINT_TEXELS * i + 1u), pool_bend(i), {
+        if (m.t > ray.t_min && (m.t < best.t || (m.t == best.t && i < best.splat)) &&
+            SIDE_COUNTS(dot3(m.normal.xyz, ray.direction)) && !IS_CUT(i, ray, m.t, centre)) {
+          best.t = m.t;
+          best.splat = i;
+        }
+      })
     })
   } while (walk.t_exit < best.t && walk_next(POOL_ARGS, &walk));
   return best;
@@ -148,14 +147,13 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
-      const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
-      float q;
-      const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t > ray.t_min && (t < best.t || (t == best.t && i < best.splat)) &&
-          !belongs_to_origin(ends, ray.direction, t, centre.w, normal) && !IS_CUT(i, ray, t, centre)) {
-        best.t = t;
-        best.splat = i;
-      }
+      FOR_MEETINGS(m, ray.origin, ray.direction, centre, pool_point_texel(POINT_TEXELS * i + 1u), pool_bend(i), {
+        if (m.t > ray.t_min && (m.t < best.t || (m.t == best.t && i < best.splat)) &&
+            !belongs_to_origin(ends, ray.direction, m.t, centre.w, m.normal) && !IS_CUT(i, ray, m.t, centre)) {
+          best.t = m.t;
+          best.splat = i;
+        }
+      })
     })
   } while (walk.t_exit < best.t && walk_next(POOL_ARGS, &walk));
   return best;
@@ -171,18 +169,17 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
-      const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
-      float q;
-      const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t > ray.t_min && t < ray.t_max && !belongs_to_ends(ends, ray.direction, ray.t_max, t, centre.w, normal) &&
-          !IS_CUT(i, ray, t, centre))
-        return true;
+      FOR_MEETINGS(m, ray.origin, ray.direction, centre, pool_point_texel(POINT_TEXELS * i + 1u), pool_bend(i), {
+        if (m.t > ray.t_min && m.t < ray.t_max &&
+            !belongs_to_ends(ends, ray.direction, ray.t_max, m.t, centre.w, m.normal) && !IS_CUT(i, ray, m.t, centre))
+          return true;
+      })
     })
   } while (walk.t_exit < ray.t_max && walk_next(POOL_ARGS, &walk));
   return false;
 }
 
-/* Adds all discs but the first that are hit in the blend's window. A splat is listed in every cell that it touches; it
+/* Adds all splats but the first that are hit in the blend's window. A splat is listed in every cell that it touches; it
  * counts in the one cell that holds its hit, so it counts once. */
 static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   Walk walk;
@@ -197,12 +194,11 @@ static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   do {
     FOR_SPLATS_OF_LEAF(walk.node, i, {
       const float4 centre = pool_point_texel(POINT_TEXELS * i);
-      const float4 normal = pool_point_texel(POINT_TEXELS * i + 1u);
-      float q;
-      const float t = meet(ray.origin, ray.direction, centre, normal.xyz, &q);
-      if (t >= t_from && t < walk.t_exit && t >= BLEND_BEGIN(blend) && t < blend->t_end && i != blend->splat &&
-          (IS_CUT(i, ray, t, centre) ? !IS_FLAT(normal.w) : t >= blend->t_first))
-        blend_add(POOL_ARGS, blend, ray, i, t, q, normal, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+      FOR_MEETINGS(m, ray.origin, ray.direction, centre, pool_point_texel(POINT_TEXELS * i + 1u), pool_bend(i), {
+        if (m.t >= t_from && m.t < walk.t_exit && m.t >= BLEND_BEGIN(blend) && m.t < blend->t_end && i != blend->splat &&
+            (IS_CUT(i, ray, m.t, centre) ? !IS_FLAT(m.normal.w) : m.t >= blend->t_first))
+          blend_add(POOL_ARGS, blend, ray, i, m, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+      })
     })
     t_from = walk.t_exit;
   } while (walk.t_exit < blend->t_end && walk_next(POOL_ARGS, &walk));

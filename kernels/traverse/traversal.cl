@@ -27,12 +27,12 @@ static inline Hit trace_closest_of(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
 }
 
 /* Of a sheet's two points, which a ray meets in one place, the one that faces it; any other point as it is. */
-static inline uint facing_side(POOL_PARAMS, uint splat, float3 direction) {
-  const float4 normal = pool_point_texel(POINT_TEXELS * splat + 1u);
+static inline uint facing_side(POOL_PARAMS, Ray ray, Hit hit) {
+  const float4 normal = normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat);
   const float side = SHEET_SIDE(normal.w);
-  if (side == 0.0f || !is_back(normal.xyz, direction))
-    return splat;
-  return side == SHEET_FRONT ? splat + 1u : splat - 1u;
+  if (side == 0.0f || !is_back(normal.xyz, ray.direction))
+    return hit.splat;
+  return side == SHEET_FRONT ? hit.splat + 1u : hit.splat - 1u;
 }
 
 /* Whether the back of the disc `centre` is a rim that sticks out. */
@@ -42,16 +42,16 @@ static inline bool sticks_out(POOL_PARAMS, Ray ray, OcclusionEnds ends, float4 c
   const Hit hit = trace_closest_of(POOL_ARGS, to_middle, ends);
   if (hit.splat == NO_SPLAT)
     return false;
-  const uint facing = facing_side(POOL_ARGS, hit.splat, to_middle.direction);
+  const uint facing = facing_side(POOL_ARGS, to_middle, hit);
   return hides_rim(to_middle.direction, distance, centre.w, hit.t, pool_point_texel(POINT_TEXELS * facing),
-                   pool_point_texel(POINT_TEXELS * facing + 1u).xyz);
+                   normal_at_hit(POOL_ARGS, to_middle, hit.t, facing).xyz);
 }
 
 #ifdef HAS_SPECULAR
 /* The next hit within `reach` behind `hit`, as if the ray had come through the surface there: what lies in the same plane,
  * before or behind it by rounding, is met. */
 static inline Hit hit_behind(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit, float reach) {
-  const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
+  const float4 normal = normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat);
   ends.origin_normal = normal.xyz;
   ends.origin_radius = pool_point_texel(POINT_TEXELS * hit.splat).w;
   ends.origin_material = (uint)normal.w + 1u;
@@ -86,7 +86,7 @@ static inline Hit visible_hit(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit,
   for (int k = 0; k < MAX_RIMS; ++k) {
     if (hit.splat == NO_SPLAT)
       break;
-    const float4 normal = pool_point_texel(POINT_TEXELS * hit.splat + 1u);
+    const float4 normal = normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat);
     if (!is_back(normal.xyz, ray.direction) || is_sheet(normal.w))
       break;
 #ifdef HAS_SPECULAR
@@ -117,10 +117,9 @@ static inline bool blended_surface(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit
   Hit first = visible_hit(POOL_ARGS, ray, ends, hit, rays);
   if (first.splat == NO_SPLAT)
     return false;
-  first.splat = facing_side(POOL_ARGS, first.splat, ray.direction);
+  first.splat = facing_side(POOL_ARGS, ray, first);
   Blend blend;
-  blend_begin(POOL_ARGS, &blend, ray, first.splat, pool_point_texel(POINT_TEXELS * first.splat),
-              pool_point_texel(POINT_TEXELS * first.splat + 1u), pool_point_texel(POINT_TEXELS * first.splat + 2u).xyz);
+  blend_begin(POOL_ARGS, &blend, ray, first);
   blend_others(POOL_ARGS, ray, &blend);
   blend_end(&blend, ray, surface);
   return true;

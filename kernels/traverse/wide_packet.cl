@@ -130,6 +130,15 @@ static inline ulong children_met_by_packet(const __global WideNode* node, const 
   return mirrored(byte_a_lane(met), b->octant);
 }
 
+#ifdef HAS_MLS
+#define REACH_OF_SPLAT 1.1181f /* over the radius: of the ball about a patch, rounded up */
+#define BEND_OF_LANE(block, lane)                                                                  \
+  (float3)(block[WIDE_BEND(WIDE_LANES, 0) + lane], block[WIDE_BEND(WIDE_LANES, 1) + lane], block[WIDE_BEND(WIDE_LANES, 2) + lane])
+#else
+#define REACH_OF_SPLAT 1.0f
+#define BEND_OF_LANE(block, lane) (float3)(0.0f)
+#endif
+
 /* For each splat of a block, a bit a group of rays whose frustum its bounding sphere reaches into before t_to. */
 static inline lanes_i groups_met(const __global float* block, const PacketBounds* b, float t_to) {
   const lanes_f radius = load_lanes(block + WIDE_RADIUS(WIDE_LANES));
@@ -141,7 +150,7 @@ static inline lanes_i groups_met(const __global float* block, const PacketBounds
   const lanes_f a = x * b->along.x + y * b->along.y + z * b->along.z;
   const lanes_f u = x * b->u.x + y * b->u.y + z * b->u.z;
   const lanes_f v = x * b->v.x + y * b->v.y + z * b->v.z;
-  const lanes_f reach = radius * b->stretch + 1e-6f;
+  const lanes_f reach = REACH_OF_SPLAT * radius * b->stretch + 1e-6f;
   const lanes_i near = (radius > 0.0f) & (a + reach >= 0.0f) & (a - reach <= t_to);
   lanes_i columns[GROUP_COLUMNS];
   for (int c = 0; c < GROUP_COLUMNS; ++c)
@@ -171,23 +180,45 @@ static inline int16 clipped_off_group(const RayPacket* p, int group, float16 t, 
 }
 #endif
 
-/* One splat against one group of rays. `clip`: null where the splat has none. */
-static inline void hit_group(const RayPacket* p, int group, float3 centre, float radius, float3 normal,
-                             const __global float* clip, uint index, PacketHits* best) {
+/* Keeps the hits of a group's rays with a splat where they are nearer. `inside`: which there are. `clip`: null where the splat
+ * has none. */
+static inline void keep_nearer(const RayPacket* p, int group, float16 t, int16 inside, float3 centre,
+                               const __global float* clip, uint index, PacketHits* best) {
   const float16 t_best = best->t[group];
   const uint16 splat_best = best->splat[group];
-  int16 inside;
-  const float16 t = meet_rays(p->x[group], p->y[group], p->z[group], centre, radius, normal, &inside);
 #ifdef HAS_CLIPS
   if (clip != 0)
     inside &= ~clipped_off_group(p, group, t, centre, clip);
 #endif
   const int16 nearer = inside & (t > p->t_min) &
-                       ((t < t_best) | ((t == t_best) & (as_int16((uint16)(index) < splat_best))))
-                       AND_SIDE_COUNTS(fma((float16)(normal.x), p->x[group],
-                                           fma((float16)(normal.y), p->y[group], normal.z * p->z[group])));
+                       ((t < t_best) | ((t == t_best) & (as_int16((uint16)(index) < splat_best))));
   best->t[group] = select(t_best, t, nearer);
   best->splat[group] = select(splat_best, (uint16)(index), nearer);
+}
+
+/* One splat against one group of rays. `bend`: of its patch, where splats are patches. */
+static inline void hit_group(const RayPacket* p, int group, float3 centre, float radius, float3 normal, float3 bend,
+                             const __global float* clip, uint index, PacketHits* best) {
+#ifdef HAS_MLS
+  const PatchRays r = patch_rays(p->x[group], p->y[group], p->z[group], centre, radius, normal, bend);
+  float16 s = r.near_s;
+  for (int root = 0; root < 2; ++root) {
+    const int16 met = s < INFINITY;
+    if ((byte_a_lane(met.lo) | byte_a_lane(met.hi)) == 0ul)
+      break;
+    keep_nearer(p, group, r.t + s,
+                met AND_SIDE_COUNTS(cosines_of_rays(&r, s, p->x[group], p->y[group], p->z[group], normal, bend)), centre, clip,
+                index, best);
+    s = r.far_s;
+  }
+#else
+  int16 inside;
+  const float16 t = meet_rays(p->x[group], p->y[group], p->z[group], centre, radius, normal, &inside);
+  keep_nearer(p, group, t,
+              inside AND_SIDE_COUNTS(fma((float16)(normal.x), p->x[group],
+                                         fma((float16)(normal.y), p->y[group], normal.z * p->z[group]))),
+              centre, clip, index, best);
+#endif
 }
 
 /* The splats of a block that reach into the packet, against the rays that they reach. */
@@ -207,6 +238,7 @@ static inline void hit_block_by_packet(const __global float* blocks, const __glo
                                      block[WIDE_CENTRE(WIDE_LANES, 2) + lane]) - p->origin;
       const float3 normal = (float3)(block[WIDE_NORMAL(WIDE_LANES, 0) + lane], block[WIDE_NORMAL(WIDE_LANES, 1) + lane],
                                      block[WIDE_NORMAL(WIDE_LANES, 2) + lane]);
+      const float3 bend = BEND_OF_LANE(block, lane);
       const __global float* clip = 0;
 #ifdef HAS_CLIPS
       if (clipped & (1u << lane))
@@ -214,7 +246,7 @@ static inline void hit_block_by_packet(const __global float* blocks, const __glo
 #endif
       for (uint groups = groups_of[lane]; groups != 0u; groups &= groups - 1u)
         hit_group(p, popcount((groups & (0u - groups)) - 1u), centre, block[WIDE_RADIUS(WIDE_LANES) + lane], normal,
-                  clip, first + lane, best);
+                  bend, clip, first + lane, best);
     }
 }
 

@@ -118,17 +118,18 @@ static inline Hit trace_closest(POOL_PARAMS, Ray ray) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
-      const lanes_u index = h.first + LANE_NUMBERS;
-      const lanes_i met = h.inside & (h.t > ray.t_min) &
-                          ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))))
-                          AND_SIDE_COUNTS(cosines_of_lanes(&h, ray.direction));
-      const lanes_i nearer = UNCLIPPED_LANES(block, ray, h, met);
-      if (any_lane(nearer)) {
-        const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
-        best.t = smallest_lane(t);
-        best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
-      }
+      FOR_HITS_OF_BLOCK(block, ray, h, {
+        const lanes_u index = h.first + LANE_NUMBERS;
+        const lanes_i met = h.inside & (h.t > ray.t_min) &
+                            ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))))
+                            AND_SIDE_COUNTS(cosines_of_lanes(&h, ray.direction));
+        const lanes_i nearer = UNCLIPPED_LANES(block, ray, h, met);
+        if (any_lane(nearer)) {
+          const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
+          best.t = smallest_lane(t);
+          best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
+        }
+      })
     })
   }
   return best;
@@ -141,18 +142,19 @@ static inline Hit trace_closest_from(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, best.t)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
-      const lanes_u index = h.first + LANE_NUMBERS;
-      const lanes_i met = h.inside & (h.t > ray.t_min) &
-                          ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
-      if (any_lane(met)) {
-        const lanes_i nearer = UNCLIPPED_LANES(block, ray, h, met & ~LANES_OF_ORIGIN(&h, met));
-        if (any_lane(nearer)) {
-          const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
-          best.t = smallest_lane(t);
-          best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
+      FOR_HITS_OF_BLOCK(block, ray, h, {
+        const lanes_u index = h.first + LANE_NUMBERS;
+        const lanes_i met = h.inside & (h.t > ray.t_min) &
+                            ((h.t < best.t) | ((h.t == best.t) & (as_lanes_i(index < best.splat))));
+        if (any_lane(met)) {
+          const lanes_i nearer = UNCLIPPED_LANES(block, ray, h, met & ~LANES_OF_ORIGIN(&h, met));
+          if (any_lane(nearer)) {
+            const lanes_f t = select((lanes_f)(INFINITY), h.t, nearer);
+            best.t = smallest_lane(t);
+            best.splat = smallest_lane_u(select((lanes_u)(NO_SPLAT), index, nearer & (t == best.t)));
+          }
         }
-      }
+      })
     })
   }
   return best;
@@ -166,46 +168,52 @@ static inline bool trace_any(POOL_PARAMS, Ray ray, OcclusionEnds ends) {
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, ray.t_min, ray.t_max)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
-      const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
-      if (any_lane(hit)) {
-        const lanes_i blocking =
-            hit & ~discs_of_end(ends.origin_normal, ends.origin_radius, at_origin, ray.direction, h.t, &h) &
-            ~discs_of_end(ends.target_normal, ends.target_radius, at_target, -ray.direction, ray.t_max - h.t, &h);
-        if (any_lane(UNCLIPPED_LANES(block, ray, h, blocking)))
-          return true;
-      }
+      FOR_HITS_OF_BLOCK(block, ray, h, {
+        const lanes_i hit = h.inside & (h.t > ray.t_min) & (h.t < ray.t_max);
+        if (any_lane(hit)) {
+          const lanes_i blocking =
+              hit & ~discs_of_end(ends.origin_normal, ends.origin_radius, at_origin, ray.direction, h.t, &h) &
+              ~discs_of_end(ends.target_normal, ends.target_radius, at_target, -ray.direction, ray.t_max - h.t, &h);
+          if (any_lane(UNCLIPPED_LANES(block, ray, h, blocking)))
+            return true;
+        }
+      })
     })
   }
   return false;
 }
 
-/* Adds all discs but the first that are hit in the blend's window. */
+/* Adds all splats but the first that are hit in the blend's window. */
 static inline void blend_others(POOL_PARAMS, Ray ray, Blend* blend) {
   const WideRay wide = wide_ray(ray);
   WALK_FROM_ROOT(walk);
   for (uint leaf; (leaf = next_leaf(node_pool, wide, &walk, BLEND_BEGIN(blend), blend->t_end)) != 0u;) {
     FOR_BLOCKS_OF_LEAF(leaf, block, {
-      const BlockHits h = meet_lanes(block, ray.origin, ray.direction);
-      const lanes_i met = h.inside & (h.t >= BLEND_BEGIN(blend)) & (h.t < blend->t_end) &
-                          as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
-      lanes_i counts = met;
+      FOR_HITS_OF_BLOCK(block, ray, h, {
+        const lanes_i met = h.inside & (h.t >= BLEND_BEGIN(blend)) & (h.t < blend->t_end) &
+                            as_lanes_i((h.first + LANE_NUMBERS) != blend->splat);
+        lanes_i counts = met;
 #ifdef HAS_CLIPS
-      const lanes_i unclipped = UNCLIPPED_LANES(block, ray, h, met);
-      counts = (unclipped & (h.t >= blend->t_first)) | (met & ~unclipped & ~flat_lanes(&h));
+        const lanes_i unclipped = UNCLIPPED_LANES(block, ray, h, met);
+        counts = (unclipped & (h.t >= blend->t_first)) | (met & ~unclipped & ~flat_lanes(&h));
 #endif
-      if (any_lane(counts)) {
-        float t_of[WIDE_LANES];
-        float q_of[WIDE_LANES];
-        store_lanes(select((lanes_f)(-INFINITY), h.t, counts), t_of);
-        store_lanes(h.q, q_of);
-        for (uint lane = 0u; lane < WIDE_LANES; ++lane)
-          if (t_of[lane] > -INFINITY) {
-            const uint i = h.first + lane;
-            blend_add(POOL_ARGS, blend, ray, i, t_of[lane], q_of[lane], pool_point_texel(POINT_TEXELS * i + 1u),
-                      pool_point_texel(POINT_TEXELS * i + 2u).xyz);
-          }
-      }
+        if (any_lane(counts)) {
+          float t_of[WIDE_LANES];
+          float q_of[WIDE_LANES];
+          store_lanes(select((lanes_f)(-INFINITY), h.t, counts), t_of);
+          store_lanes(h.q, q_of);
+          KEEP_NORMALS(&h, normal_of);
+          for (uint lane = 0u; lane < WIDE_LANES; ++lane)
+            if (t_of[lane] > -INFINITY) {
+              const uint i = h.first + lane;
+              Meeting m;
+              m.t = t_of[lane];
+              m.q = q_of[lane];
+              m.normal = KEPT_NORMAL(normal_of, lane, i);
+              blend_add(POOL_ARGS, blend, ray, i, m, pool_point_texel(POINT_TEXELS * i + 2u).xyz);
+            }
+        }
+      })
     })
   }
 }

@@ -44,10 +44,10 @@ struct Task {
 
 class Builder {
 public:
-  Builder(View<Splat> splats, const TreeOptions& options)
+  Builder(View<Splat> splats, const TreeOptions& options, View<PatchBend> bends)
       : options_(options), curve_(options.order, options.axis_bits), children_(1u << (3 * options.axis_bits)) {
     tree_.options = options;
-    sort_along_curve(splats);
+    sort_along_curve(splats, bends);
     Part top;
     top.nodes.emplace_back();
     top.nodes[0].count = static_cast<std::uint32_t>(splats.size);
@@ -65,7 +65,7 @@ public:
   Tree take() { return std::move(tree_); }
 
 private:
-  void sort_along_curve(View<Splat> splats) {
+  void sort_along_curve(View<Splat> splats, View<PatchBend> bends) {
     items_.resize(splats.size);
     parallel_ranges(splats.size, grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -76,15 +76,19 @@ private:
     const bool listing = options_.listing == Listing::overlaps;
     splats_.resize(listing ? splats.size : 0);
     half_.resize(listing ? splats.size : 0);
+    slab_.resize(listing ? bends.size : 0);
     parallel_ranges(splats.size, grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         tree_.order[k] = items_[k].index;
         if (!listing) continue;
         splats_[k] = splats[items_[k].index];
-        disc_half_extents(splats_[k], half_[k].data());
+        if (!slab_.empty()) slab_[k] = slab_of(bends[items_[k].index], splats_[k].radius);
+        disc_half_extents(splats_[k], half_[k].data(), slab_at(k));
       }
     });
   }
+
+  Slab slab_at(std::size_t k) const { return slab_.empty() ? Slab{} : slab_[k]; }
 
   /// First own point of each child in the order of the curve, and one past the last; the keys are sorted, so each
   /// border is a binary search.
@@ -116,9 +120,10 @@ private:
   void list_in_children(std::uint32_t point, unsigned owner, const Cell& cell, Lists& lists) const {
     const int n = 1 << options_.axis_bits;
     const float side = cell.side / static_cast<float>(n);
+    const Slab slab = slab_at(point);
     int from[3], to[3];
     for (int a = 0; a < 3; ++a) {
-      const float centre = splats_[point].position[a] - cell.low[a], reach = half_[point][a] + cell_margin;
+      const float centre = slab_centre(splats_[point], slab, a) - cell.low[a], reach = half_[point][a] + cell_margin;
       from[a] = std::clamp(static_cast<int>(std::floor((centre - reach) / side)), 0, n - 1);
       to[a] = std::clamp(static_cast<int>(std::floor((centre + reach) / side)), 0, n - 1);
     }
@@ -126,7 +131,7 @@ private:
       for (int y = from[1]; y <= to[1]; ++y)
         for (int x = from[0]; x <= to[0]; ++x) {
           const unsigned child = static_cast<unsigned>(x + n * (y + n * z));
-          if (child != owner && disc_touches_cell(splats_[point], half_[point].data(), child_cell(cell, child)))
+          if (child != owner && disc_touches_cell(splats_[point], half_[point].data(), child_cell(cell, child), slab))
             lists[child].push_back(point);
         }
   }
@@ -243,14 +248,15 @@ private:
   Curve curve_;
   unsigned children_;
   Tree tree_;
-  Pool<KeyedIndex> items_;          ///< along the curve, as are splats_ and half_
+  Pool<KeyedIndex> items_;          ///< along the curve, as are splats_, half_ and slab_
   Pool<Splat> splats_;              ///< for Listing::overlaps only
   Pool<std::array<float, 3>> half_; ///< for Listing::overlaps only
+  std::vector<Slab> slab_;          ///< of patches; empty where all splats are discs
 };
 
 } // namespace
 
-Tree build_tree(View<Splat> splats, const TreeOptions& options) {
+Tree build_tree(View<Splat> splats, const TreeOptions& options, View<PatchBend> bends) {
   if (options.axis_bits < 1 || options.axis_bits > 2)
     throw std::invalid_argument("octree: N must be 2 or 4 (axis_bits 1 or 2)");
   if (options.max_depth > key_levels(options.axis_bits))
@@ -259,7 +265,7 @@ Tree build_tree(View<Splat> splats, const TreeOptions& options) {
   if (options.leaf_capacity < 1) throw std::invalid_argument("octree: leaf_capacity must be at least 1");
   if (splats.size >= std::numeric_limits<std::uint32_t>::max())
     throw std::invalid_argument("octree: too many splats for 32-bit addresses");
-  return Builder(splats, options).take();
+  return Builder(splats, options, bends).take();
 }
 
 } // namespace pointgi

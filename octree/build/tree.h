@@ -45,7 +45,8 @@ struct Tree {
 /// listed, as an extra splat, in every other leaf that its disc touches (method.md §2). A cell is divided while it
 /// lists more than leaf_capacity splats, is above max_depth, and dividing lowers the expected number of splats a ray
 /// tests there. Works on all cores; the same tree for any number of them. Throws std::invalid_argument on options out
-/// of range or more than 2^32-2 splats, std::length_error when the tree outgrows 32-bit addresses.
-Tree build_tree(View<Splat> splats, const TreeOptions& options);
+/// of range or more than 2^32-2 splats, std::length_error when the tree outgrows 32-bit addresses. `bends`: of the
+/// splats, whose patches then count in place of their discs; empty: all are discs.
+Tree build_tree(View<Splat> splats, const TreeOptions& options, View<PatchBend> bends = {});
 
 } // namespace pointgi

@@ -38,4 +38,9 @@ inline const SplatClips& clips_of(const OctreePools& pools) {
   return std::visit([](const auto& p) -> const SplatClips& { return p.clips; }, pools);
 }
 
+/// How the patches of the points of the pool stand off their discs; empty where all are discs.
+inline const PatchBends& bends_of(const OctreePools& pools) {
+  return std::visit([](const auto& p) -> const PatchBends& { return p.bends; }, pools);
+}
+
 } // namespace pointgi

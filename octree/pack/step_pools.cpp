@@ -94,7 +94,7 @@ private:
 
 } // namespace
 
-StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips) {
+StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips, View<PatchBend> bends) {
   const std::size_t before = StepPools::first_entry(clips.size(), splats.size);
   if (tree.extra.size() + tree.nodes.size() + before >= std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("octree: the Begin-End pool outgrows 32-bit addresses; raise the leaf capacity");
@@ -104,6 +104,7 @@ StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clip
   pools.depth = tree.depth;
   pools.extra_splats = tree.extra.size();
   Packer(splats, tree, clips, pools).run();
+  pools.bends = bends_along(bends, pools.source);
   return pools;
 }
 

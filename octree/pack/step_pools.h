@@ -11,6 +11,7 @@ struct StepPools {
   Pool<OctreePoint> points;   ///< along the curve
   Pool<std::uint32_t> source; ///< input index of each point of the pool
   SplatClips clips;           ///< of the points of the pool
+  PatchBends bends;           ///< of the points of the pool; empty where all are discs
   unsigned axis_bits = 1;
   PointOrder order = PointOrder::morton; ///< of nodes, Begin-End entries and points
   unsigned depth = 0;
@@ -24,18 +25,18 @@ struct StepPools {
 
   std::size_t bytes() const {
     return nodes.size() * sizeof(OctreeNode) + begin_end.size() * sizeof(std::uint32_t) +
-           points.size() * sizeof(OctreePoint);
+           points.size() * sizeof(OctreePoint) + bends.size() * sizeof(PatchBend);
   }
 };
 
-/// Packs a tree over the same splats, of which some end at borders, on all cores; the same pools for any number of
-/// them. Throws std::length_error when the Begin-End pool outgrows 32-bit addresses.
-StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips = {});
+/// Packs a tree over the same splats (and the same bends), of which some end at borders, on all cores; the same pools
+/// for any number of them. Throws std::length_error when the Begin-End pool outgrows 32-bit addresses.
+StepPools pack_step(View<Splat> splats, const Tree& tree, const SplatClips& clips = {}, View<PatchBend> bends = {});
 
 /// Checks every invariant that the traversal relies on: types, child blocks inside the pool and each used once, levels,
 /// own points inside their cell and each in one leaf, Begin-End entries along the curve and closed, every leaf that a
-/// disc touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node that breaks
-/// one. Time O(n log n); the tests and debug builds call it.
+/// disc, or its patch, touches lists it and no leaf lists a splat twice. Throws std::logic_error naming the first node
+/// that breaks one. Time O(n log n); the tests and debug builds call it.
 void verify(const StepPools& pools);
 
 } // namespace pointgi

@@ -18,6 +18,7 @@ public:
 
   void run() {
     if (pools_.nodes.empty() || pools_.begin_end.empty()) fail(0, "the pools are empty");
+    if (!pools_.bends.empty() && pools_.bends.size() != pools_.points.size()) fail(0, "some points have no bend");
     visit(0, Cell{{0.0f, 0.0f, 0.0f}, 1.0f}, 0, Curve::start, {});
     if (std::find(reached_.begin(), reached_.end(), false) != reached_.end())
       fail(static_cast<std::size_t>(std::find(reached_.begin(), reached_.end(), false) - reached_.begin()),
@@ -96,8 +97,9 @@ private:
       std::vector<std::uint32_t> candidates;
       const auto keep = [&](std::uint32_t p) {
         float half[3];
-        disc_half_extents(pools_.points[p], half);
-        if (!contains(child, pools_.points[p]) && disc_touches_cell(pools_.points[p], half, child))
+        const Slab slab = pools_.bends.empty() ? Slab{} : slab_of(pools_.bends[p], pools_.points[p].radius);
+        disc_half_extents(pools_.points[p], half, slab);
+        if (!contains(child, pools_.points[p]) && disc_touches_cell(pools_.points[p], half, child, slab))
           candidates.push_back(p);
       };
       for (std::uint32_t p = first; p < past; ++p)

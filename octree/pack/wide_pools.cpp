@@ -18,15 +18,19 @@ struct Box {
   float high[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
                    -std::numeric_limits<float>::infinity()};
 
-  void add(const Splat& splat) {
+  void add(const Splat& splat, const Slab& slab) {
     float half[3];
-    disc_half_extents(splat, half);
+    disc_half_extents(splat, half, slab);
     for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], splat.position[a] - half[a] - cell_margin);
-      high[a] = std::max(high[a], splat.position[a] + half[a] + cell_margin);
+      low[a] = std::min(low[a], slab_centre(splat, slab, a) - half[a] - cell_margin);
+      high[a] = std::max(high[a], slab_centre(splat, slab, a) + half[a] + cell_margin);
     }
   }
 };
+
+Slab slab_at(const WidePools& pools, std::size_t point) {
+  return pools.bends.empty() ? Slab{} : slab_of(pools.bends[point], pools.points[point].radius);
+}
 
 struct Range {
   std::uint32_t first, count;
@@ -35,9 +39,9 @@ struct Range {
 /// Lays nodes and leaves out along the curve on one thread, which is little work, then fills the pools on all.
 class Packer {
 public:
-  Packer(View<Splat> splats, const Tree& tree, const SplatClips& clips, WidePools& pools)
-      : splats_(splats), tree_(tree), clips_(clips), curve_(tree.options.order, tree.options.axis_bits), pools_(pools) {
-  }
+  Packer(View<Splat> splats, const Tree& tree, const SplatClips& clips, View<PatchBend> bends, WidePools& pools)
+      : splats_(splats), tree_(tree), clips_(clips), bends_(bends), curve_(tree.options.order, tree.options.axis_bits),
+        pools_(pools) {}
 
   void run() {
     const TreeNode& root = tree_.nodes[0];
@@ -49,7 +53,8 @@ public:
     pools_.depth = static_cast<unsigned>(levels_.size());
     pools_.leaves = leaves_.size();
     pools_.nodes.resize(children_.size());
-    pools_.blocks.resize(blocks_ * std::size_t{WIDE_BLOCK_WORDS(pools_.lanes)} + CLIP_WORDS * clips_.size());
+    pools_.bends.resize(bends_.size);
+    pools_.blocks.resize(blocks_ * pools_.block_words() + CLIP_WORDS * clips_.size());
     pools_.points.resize(splats_.size);
     pools_.source.resize(splats_.size);
     parallel_ranges(leaves_.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -118,15 +123,17 @@ private:
   void fill_leaf(const Leaf& leaf) {
     const unsigned lanes = pools_.lanes;
     const std::uint32_t blocks = (leaf.range.count + lanes - 1) / lanes;
-    float* block = &pools_.blocks[static_cast<std::size_t>(leaf.first_block) * WIDE_BLOCK_WORDS(lanes)];
+    const std::size_t words = pools_.block_words();
+    float* block = &pools_.blocks[leaf.first_block * words];
     // Apart from the rest, because of what follows a processor waits for each splat, and here fetches many at a time.
     for (std::uint32_t point = leaf.range.first; point < leaf.range.first + leaf.range.count; ++point) {
       pools_.source[point] = tree_.order[point];
       pools_.points[point] = splats_[tree_.order[point]];
+      if (bends_.size != 0) pools_.bends[point] = bends_[tree_.order[point]];
     }
     Box box;
-    for (std::uint32_t b = 0; b < blocks; ++b, block += WIDE_BLOCK_WORDS(lanes)) {
-      std::fill_n(block, WIDE_BLOCK_WORDS(lanes), 0.0f);
+    for (std::uint32_t b = 0; b < blocks; ++b, block += words) {
+      std::fill_n(block, words, 0.0f);
       const std::uint32_t first = leaf.range.first + b * lanes, past = leaf.range.first + leaf.range.count;
       std::memcpy(block + WIDE_FIRST(lanes), &first, sizeof first);
       pg_uint sheets = 0, flat = 0;
@@ -144,7 +151,8 @@ private:
         block[WIDE_RADIUS(lanes) + lane] = splat.radius;
         if (is_sheet(splat)) sheets |= 1u << lane;
         if (is_flat(splat)) flat |= 1u << lane;
-        box.add(splat);
+        if (bends_.size != 0) set_bend(block, lane, pools_.bends[first + lane]);
+        box.add(splat, slab_at(pools_, first + lane));
       }
       std::memcpy(block + WIDE_SHEETS(lanes), &sheets, sizeof sheets);
       std::memcpy(block + WIDE_FLAT(lanes), &flat, sizeof flat);
@@ -152,15 +160,21 @@ private:
     set_box(pools_.nodes[leaf.node], leaf.child, box);
   }
 
+  void set_bend(float* block, unsigned lane, const PatchBend& bend) const {
+    block[WIDE_BEND(pools_.lanes, 0) + lane] = bend.xx;
+    block[WIDE_BEND(pools_.lanes, 1) + lane] = bend.xy;
+    block[WIDE_BEND(pools_.lanes, 2) + lane] = bend.yy;
+  }
+
   /// Behind the blocks, in the order of the points, each block told of its own.
   void write_clips() {
     const std::vector<std::uint32_t> clip_of = clip_of_each(clips_, splats_.size);
-    std::size_t at = blocks_ * std::size_t{WIDE_BLOCK_WORDS(pools_.lanes)};
+    std::size_t at = blocks_ * pools_.block_words();
     if (pools_.blocks.size() > std::numeric_limits<std::uint32_t>::max())
       throw std::length_error("octree: more leaf blocks and clips than 32 bits count; raise the leaf capacity");
     std::uint32_t point = 0;
     for (std::size_t b = 0; b < blocks_; ++b) {
-      float* block = &pools_.blocks[b * WIDE_BLOCK_WORDS(pools_.lanes)];
+      float* block = &pools_.blocks[b * pools_.block_words()];
       const auto first = static_cast<std::uint32_t>(at);
       pg_uint clipped = 0;
       for (unsigned lane = 0; lane < pools_.lanes && block[WIDE_RADIUS(pools_.lanes) + lane] >= 0.0f; ++lane, ++point) {
@@ -210,6 +224,7 @@ private:
   View<Splat> splats_;
   const Tree& tree_;
   const SplatClips& clips_;
+  View<PatchBend> bends_;
   Curve curve_;
   WidePools& pools_;
   std::vector<std::array<std::uint32_t, WIDE_CHILDREN>> children_; ///< of each node, as WideNode::child
@@ -263,7 +278,7 @@ private:
     const std::uint32_t blocks = (reference & ~WIDE_LEAF) >> 24, first = reference & WIDE_BLOCK_MASK;
     for (std::uint32_t b = first; b < first + blocks; ++b) {
       if (b >= pools_.block_count()) fail("a leaf lies outside the block pool");
-      const float* block = &pools_.blocks[b * WIDE_BLOCK_WORDS(lanes)];
+      const float* block = &pools_.blocks[b * pools_.block_words()];
       std::uint32_t index;
       std::memcpy(&index, block + WIDE_FIRST(lanes), sizeof index);
       pg_uint sheets, flat, clipped, clips;
@@ -281,7 +296,7 @@ private:
         if ((flat >> lane & 1u) != (is_flat(pools_.points[next_point_]) ? 1u : 0u))
           fail("block " + std::to_string(b) + " does not know which of its splats are flat");
         if ((clipped >> lane & 1u) != 0u) check_clip(clips + CLIP_WORDS * (next_clip_ - first_clip), b);
-        check_splat(pools_.points[next_point_++], block, lane, box);
+        check_splat(next_point_++, block, lane, box);
       }
     }
   }
@@ -294,10 +309,17 @@ private:
     ++next_clip_;
   }
 
-  void check_splat(const OctreePoint& point, const float* block, unsigned lane, const Box& box) const {
+  void check_splat(std::size_t index, const float* block, unsigned lane, const Box& box) const {
     const unsigned lanes = pools_.lanes;
+    const OctreePoint& point = pools_.points[index];
     Box own;
-    own.add(point);
+    own.add(point, slab_at(pools_, index));
+    if (!pools_.bends.empty()) {
+      const PatchBend& bend = pools_.bends[index];
+      const float terms[3] = {bend.xx, bend.xy, bend.yy};
+      for (int term = 0; term < 3; ++term)
+        if (block[WIDE_BEND(lanes, term) + lane] != terms[term]) fail("a block has a bend that is not its splat's");
+    }
     for (unsigned a = 0; a < 3; ++a) {
       if (block[WIDE_CENTRE(lanes, a) + lane] != point.position[a] ||
           block[WIDE_NORMAL(lanes, a) + lane] != point.normal[a] || block[WIDE_RADIUS(lanes) + lane] != point.radius)
@@ -313,14 +335,15 @@ private:
 
 } // namespace
 
-WidePools pack_wide(View<Splat> splats, const Tree& tree, unsigned lanes, const SplatClips& clips) {
+WidePools pack_wide(View<Splat> splats, const Tree& tree, unsigned lanes, const SplatClips& clips,
+                    View<PatchBend> bends) {
   if (tree.options.listing != Listing::centres || tree.options.axis_bits != 1)
     throw std::invalid_argument("octree: the wide form takes a tree with N = 2 that lists centres");
   if (lanes != 8 && lanes != 16) throw std::invalid_argument("octree: the wide form has 8 or 16 lanes");
   WidePools pools;
   pools.lanes = lanes;
   pools.order = tree.options.order;
-  Packer(splats, tree, clips, pools).run();
+  Packer(splats, tree, clips, bends, pools).run();
   return pools;
 }
 

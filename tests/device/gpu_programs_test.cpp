@@ -109,9 +109,13 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
         if (!f.shadow_rays && !f.radiosity) continue;
         if (k > 0 && f.lights == 0 && !f.emitters && !f.environment && !f.radiosity) continue; // light brings photons
         const SceneFeatures given = features_on(gpu, f);
-        const TraversalVariant v = plain_variant(form);
+        TraversalVariant v = plain_variant(form);
         CAPTURE(bits, k);
-        CHECK(checked.count(shade_program(v, given).file + "\n" + shade_program(v, given).options) == 1);
+        for (const bool patches : {false, true}) {
+          v.patches = patches;
+          CHECK(checked.count(shade_program(v, given).file + "\n" + shade_program(v, given).options) ==
+                (why_not(v, gpu).empty() ? 1 : 0));
+        }
         CHECK((given.lights & f.lights) == f.lights);
         CHECK(given.emitters >= f.emitters);
         CHECK(given.environment >= f.environment);

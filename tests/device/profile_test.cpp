@@ -16,6 +16,7 @@ struct Ball {
   Frame frame;
   std::vector<Splat> splats = sphere_splats(900);
   SplatClips clips;
+  PatchBends bends;
 
   Ball() {
     for (Splat small : sphere_splats(300, 0.1f)) {
@@ -32,7 +33,7 @@ struct Ball {
   }
 
   ProfileRequest request() const {
-    ProfileRequest request{scene, frame, splats, clips, {}};
+    ProfileRequest request{scene, frame, splats, clips, bends, {}};
     request.rounds = 1;
     request.launch_seconds = 1e-3;
     return request;

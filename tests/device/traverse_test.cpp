@@ -3,10 +3,10 @@
 #include "host/passes/ray_packets.h"
 #include "host/tune/variant_list.h"
 #include "octree/ref/closest_hit.h"
+#include "tests/support/answers.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include "tests/support/rays.h"
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -21,39 +21,6 @@ struct Other {
   std::vector<cl_uint> blocked;
   std::vector<cl_float4> surfaces; ///< two a ray: normal and t, albedo and 1
 };
-
-/// Two strips across each other, of any width, on a third of the splats, and on both sides of a sheet alike.
-SplatClips random_clips(const std::vector<Splat>& splats, unsigned seed) {
-  std::mt19937 g(seed);
-  std::uniform_real_distribution<float> share(0.0f, 1.3f), turn(0.0f, 6.28f);
-  SplatClips clips;
-  for (std::uint32_t i = 0; i < splats.size(); ++i) {
-    if (is_back_of_sheet(splats[i])) {
-      if (!clips.empty() && clips.back().splat + 1 == i) clips.push_back({i, clips.back().clip});
-      continue;
-    }
-    if (i / 2 % 3 != 0) continue;
-    const Eigen::Vector3f normal = Eigen::Map<const Eigen::Vector3f>(splats[i].normal);
-    const Eigen::Vector3f u = Eigen::AngleAxisf(turn(g), normal) * normal.unitOrthogonal(), v = normal.cross(u);
-    ClippedSplat clipped{i, {}};
-    const Eigen::Vector3f axes[CLIP_STRIPS] = {u, i % 2 == 0 ? v : Eigen::Vector3f::Zero()};
-    for (int k = 0; k < CLIP_STRIPS; ++k) {
-      std::copy_n(axes[k].data(), 3, clipped.clip.strip[k].axis);
-      clipped.clip.strip[k].low = -share(g) * splats[i].radius;
-      clipped.clip.strip[k].high = share(g) * splats[i].radius;
-    }
-    clips.push_back(clipped);
-  }
-  return clips;
-}
-
-/// A clip for each splat; zero, which cuts nothing off, where it has none.
-std::vector<DiscClip> of_all(const SplatClips& clips, const std::vector<Splat>& splats) {
-  std::vector<DiscClip> all(splats.size());
-  for (const ClippedSplat& c : clips)
-    all[c.splat] = c.clip;
-  return all;
-}
 
 /// Nearest hits through the octree, one ray a work-item whatever the variant's grouping; `splat` is the index into
 /// `splats`.
@@ -107,31 +74,6 @@ std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::ve
   else
     device.launch(kernel, shape, points, splat_count, queries, answers, count, device.upload(of_all(clips, splats)));
   return device.download(answers, rays.size());
-}
-
-/// Rays that find another splat, unless both lie at exactly one distance, or a t further off than 1e-5. (Both kernels
-/// round alike, so t should in fact be bit-identical on one device.)
-std::size_t differences(const std::vector<RayAnswer>& a, const std::vector<RayAnswer>& b) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const bool same_splat = a[i].splat == b[i].splat;
-    const bool tie = a[i].splat != NO_SPLAT && b[i].splat != NO_SPLAT && a[i].t == b[i].t;
-    if (!(same_splat || tie) || !(std::fabs(a[i].t - b[i].t) <= 1e-5f)) ++count;
-  }
-  return count;
-}
-
-/// The list that all shared tests go through: those whose tracing differs, as far as this device takes them.
-std::vector<TraversalVariant> valid_variants() {
-  std::vector<TraversalVariant> variants;
-  for (const TraversalVariant& variant : tracing_variants())
-    if (why_not(variant, session().info()).empty()) variants.push_back(variant);
-  return variants;
-}
-
-std::size_t hits(const std::vector<RayAnswer>& answers) {
-  return static_cast<std::size_t>(
-      std::count_if(answers.begin(), answers.end(), [](const RayAnswer& a) { return a.splat != NO_SPLAT; }));
 }
 
 } // namespace
@@ -276,28 +218,6 @@ TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan s
 }
 
 namespace {
-
-/// Narrow bundles and wide ones, along axes, across the octants, from inside discs; three bundles with wide gaps
-/// between, one of them behind the others' middle; and half a sphere's width.
-std::vector<RayQuery> bundles(const std::vector<Splat>& splats) {
-  std::vector<RayQuery> rays;
-  const auto middles = hard_rays(splats, 1500, 41);
-  std::mt19937 g(43);
-  std::normal_distribution<float> gauss;
-  for (std::size_t i = 0; i < middles.size(); ++i) {
-    const float spread = i % 4 == 0 ? 0.0f : i % 4 == 1 ? 1e-3f : i % 4 == 2 ? 0.05f : 1.0f;
-    const float apart[3][3] = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {-0.7f, -0.7f, 0.1f}};
-    for (int k = 0; k < PACKET_RAYS; ++k) {
-      float d[3];
-      for (int a = 0; a < 3; ++a)
-        d[a] = i % 8 == 1   ? apart[k % 3][a] + 1e-3f * gauss(g)
-               : i % 8 == 5 ? middles[i].direction[a] + 0.5f * gauss(g)
-                            : middles[i].direction[a] + spread * gauss(g);
-      rays.push_back(make_ray(middles[i].origin, d));
-    }
-  }
-  return rays;
-}
 
 /// Answers of packets of PACKET_RAYS rays each.
 std::vector<RayAnswer> trace_in_packets(const std::vector<Splat>& splats, const std::vector<RayQuery>& rays,

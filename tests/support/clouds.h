@@ -1,6 +1,7 @@
 #pragma once
 /// Small synthetic splat sets in the root cube.
 #include "octree/splat.h"
+#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -95,6 +96,60 @@ inline std::vector<Splat> mixed_splats() {
   for (const auto& part : {sphere_splats(500), plane_splats(12)})
     all.insert(all.end(), part.begin(), part.end());
   return all;
+}
+
+/// Two strips across each other, of any width, on a third of the splats, and on both sides of a sheet alike.
+inline SplatClips random_clips(const std::vector<Splat>& splats, unsigned seed) {
+  std::mt19937 g(seed);
+  std::uniform_real_distribution<float> share(0.0f, 1.3f), turn(0.0f, 6.28f);
+  SplatClips clips;
+  for (std::uint32_t i = 0; i < splats.size(); ++i) {
+    if (is_back_of_sheet(splats[i])) {
+      if (!clips.empty() && clips.back().splat + 1 == i) clips.push_back({i, clips.back().clip});
+      continue;
+    }
+    if (i / 2 % 3 != 0) continue;
+    const Eigen::Vector3f normal = Eigen::Map<const Eigen::Vector3f>(splats[i].normal);
+    const Eigen::Vector3f u = Eigen::AngleAxisf(turn(g), normal) * normal.unitOrthogonal(), v = normal.cross(u);
+    ClippedSplat clipped{i, {}};
+    const Eigen::Vector3f axes[CLIP_STRIPS] = {u, i % 2 == 0 ? v : Eigen::Vector3f::Zero()};
+    for (int k = 0; k < CLIP_STRIPS; ++k) {
+      std::copy_n(axes[k].data(), 3, clipped.clip.strip[k].axis);
+      clipped.clip.strip[k].low = -share(g) * splats[i].radius;
+      clipped.clip.strip[k].high = share(g) * splats[i].radius;
+    }
+    clips.push_back(clipped);
+  }
+  return clips;
+}
+
+/// A clip for each splat; zero, which cuts nothing off, where it has none.
+inline std::vector<DiscClip> of_all(const SplatClips& clips, const std::vector<Splat>& splats) {
+  std::vector<DiscClip> all(splats.size());
+  for (const ClippedSplat& c : clips)
+    all[c.splat] = c.clip;
+  return all;
+}
+
+/// A bend for each splat, a seventh of them flat, others so steep that they end at PATCH_HEIGHT; that of a sheet's back
+/// is its front's from behind.
+inline PatchBends random_bends(const std::vector<Splat>& splats, unsigned seed) {
+  std::mt19937 g(seed);
+  std::uniform_real_distribution<float> share(-1.0f, 1.0f);
+  PatchBends bends;
+  for (std::size_t i = 0; i < splats.size(); ++i) {
+    if (is_back_of_sheet(splats[i])) {
+      const PatchBend front = bends.back();
+      bends.push_back({-front.xx, front.xy, -front.yy, 0.0f});
+      continue;
+    }
+    // The steepest curvature of such a form is at most |xx + yy| / 2 + |(xx - yy, xy)| / 2.
+    const float most = i % 7 == 0 ? 0.0f : 2.0f * PATCH_HEIGHT / splats[i].radius, turn = 3.14159265f * share(g);
+    const float mean = most * share(g), apart = (most - std::fabs(mean)) * std::fabs(share(g));
+    bends.push_back(
+        {mean + apart * std::cos(turn), 2.0f * apart * std::sin(turn), mean - apart * std::cos(turn), 0.0f});
+  }
+  return bends;
 }
 
 } // namespace pointgi::test

@@ -27,7 +27,7 @@ struct PhotonScene {
         octree(build_pools(placed.splats, variant)), pools(upload_pools(session(), octree, variant.storage)),
         lighting(device_lighting(scene, placed.frame, points())), sources(photon_sources(lighting, points())) {
     StageLog stages;
-    field = normal_field_of(session(), lighting, points(), stages);
+    field = normal_field_of(session(), lighting, points(), false, stages);
   }
 
   View<Splat> points() const { return points_of(octree); }

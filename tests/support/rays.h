@@ -75,4 +75,26 @@ inline std::vector<RayQuery> hard_rays(const std::vector<Splat>& splats, std::si
   return rays;
 }
 
+/// Narrow bundles and wide ones, along axes, across the octants, from inside discs; three bundles with wide gaps
+/// between, one of them behind the others' middle; and half a sphere's width.
+inline std::vector<RayQuery> bundles(const std::vector<Splat>& splats) {
+  std::vector<RayQuery> rays;
+  const auto middles = hard_rays(splats, 1500, 41);
+  std::mt19937 g(43);
+  std::normal_distribution<float> gauss;
+  for (std::size_t i = 0; i < middles.size(); ++i) {
+    const float spread = i % 4 == 0 ? 0.0f : i % 4 == 1 ? 1e-3f : i % 4 == 2 ? 0.05f : 1.0f;
+    const float apart[3][3] = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {-0.7f, -0.7f, 0.1f}};
+    for (int k = 0; k < PACKET_RAYS; ++k) {
+      float d[3];
+      for (int a = 0; a < 3; ++a)
+        d[a] = i % 8 == 1   ? apart[k % 3][a] + 1e-3f * gauss(g)
+               : i % 8 == 5 ? middles[i].direction[a] + 0.5f * gauss(g)
+                            : middles[i].direction[a] + spread * gauss(g);
+      rays.push_back(make_ray(middles[i].origin, d));
+    }
+  }
+  return rays;
+}
+
 } // namespace pointgi::test

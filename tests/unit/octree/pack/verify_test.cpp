@@ -34,6 +34,22 @@ TEST_CASE("the Begin-End pool knows the borders of the splats, wherever these co
     CHECK((pools.begin_end[i] == 0) == (pools.source[i] % 5 != 0));
 }
 
+TEST_CASE("cells list the patches that reach into them") {
+  const auto splats = mixed_splats();
+  const PatchBends bends = random_bends(splats, 3);
+  StepPools pools = pack_step(splats, build_tree(splats, {1, 8, 21}, bends), {}, bends);
+  CHECK_NOTHROW(verify(pools));
+  for (std::size_t i = 0; i < splats.size(); ++i)
+    REQUIRE(pools.bends[i].xx == bends[pools.source[i]].xx);
+  SECTION("a tree of discs") {
+    CHECK_THROWS_AS(verify(pack_step(splats, build_tree(splats, {1, 8, 21}), {}, bends)), std::logic_error);
+  }
+  SECTION("a point without a bend") {
+    pools.bends.pop_back();
+    CHECK_THROWS_AS(verify(pools), std::logic_error);
+  }
+}
+
 TEST_CASE("the verifier finds each planted fault") {
   StepPools pools = sound_pools();
   const std::size_t leaf = first_of_type(pools, NODE_LEAF), empty = first_of_type(pools, NODE_EMPTY);

@@ -8,12 +8,12 @@ using namespace pointgi::test;
 namespace {
 
 WidePools pack(const std::vector<Splat>& splats, unsigned leaf_capacity, unsigned lanes,
-               PointOrder order = PointOrder::morton, const SplatClips& clips = {}) {
+               PointOrder order = PointOrder::morton, const SplatClips& clips = {}, const PatchBends& bends = {}) {
   TreeOptions options;
   options.order = order;
   options.leaf_capacity = leaf_capacity;
   options.listing = Listing::centres;
-  return pack_wide(splats, build_tree(splats, options), lanes, clips);
+  return pack_wide(splats, build_tree(splats, options, bends), lanes, clips, bends);
 }
 
 } // namespace
@@ -39,6 +39,25 @@ TEST_CASE("blocks know the borders of their splats, wherever these come to lie")
   for (const ClippedSplat& c : pools.clips)
     REQUIRE(c.clip.strip[0].high == static_cast<float>(pools.source[c.splat]));
   CHECK(pools.blocks.size() == pack(splats, 8, lanes, PointOrder::hilbert).blocks.size() + CLIP_WORDS * clips.size());
+}
+
+TEST_CASE("blocks know the bends of their patches, and boxes hold them") {
+  const unsigned lanes = GENERATE(8u, 16u);
+  const auto splats = mixed_splats();
+  const PatchBends bends = random_bends(splats, 3);
+  WidePools pools = pack(splats, 8, lanes, PointOrder::hilbert, numbered_clips(splats.size()), bends);
+  CHECK_NOTHROW(verify(pools));
+  for (std::size_t i = 0; i < splats.size(); ++i)
+    REQUIRE(pools.bends[i].xy == bends[pools.source[i]].xy);
+  SECTION("a bend that differs") {
+    pools.blocks[WIDE_BEND(lanes, 1)] += 1.0f;
+    CHECK_THROWS_AS(verify(pools), std::logic_error);
+  }
+  SECTION("boxes of discs alone") {
+    WidePools flat = pack(splats, 8, lanes, PointOrder::hilbert, numbered_clips(splats.size()));
+    pools.nodes = flat.nodes;
+    CHECK_THROWS_AS(verify(pools), std::logic_error);
+  }
 }
 
 TEST_CASE("the wide form's verifier finds each planted fault") {
