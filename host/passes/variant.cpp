@@ -146,6 +146,10 @@ Program fmm_program(const char* file) {
   return {file, ""};
 }
 
+Program cones_program(const char* file, unsigned texels) {
+  return {file, texels == 0 ? "" : "-D CONE_SIDES=" + std::to_string(texels)};
+}
+
 Program trace_photons_program(const TraversalVariant& variant, const SceneFeatures& features, PhotonStart start) {
   const char* option = start == PhotonStart::equal_power     ? " -D EQUAL_POWER"
                        : start == PhotonStart::from_surfaces ? " -D FROM_SURFACES"

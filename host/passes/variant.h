@@ -88,6 +88,8 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 
 /// Radiosity: a file of kernels/radiosity/fmm or kernels/radiosity/direct; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
+/// Voxel cone tracing: a file of kernels/radiosity/cones. `texels`: of a voxel; 0 for voxelise.cl, which does not ask.
+Program cones_program(const char* file, unsigned texels = 0);
 
 /// Where photons set out.
 enum class PhotonStart {

@@ -3,10 +3,10 @@
 namespace pointgi {
 
 // Each in the file of its name.
-extern const RadiosityMethod fmm_method, direct_method;
+extern const RadiosityMethod fmm_method, direct_method, cones_method;
 
 const std::vector<const RadiosityMethod*>& radiosity_methods() {
-  static const std::vector<const RadiosityMethod*> all{&fmm_method, &direct_method};
+  static const std::vector<const RadiosityMethod*> all{&fmm_method, &direct_method, &cones_method};
   return all;
 }
 

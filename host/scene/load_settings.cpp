@@ -89,6 +89,26 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
                                (up == UpAxis::y || up == UpAxis::minus_y ? "z" : "y") + "\"");
 }
 
+namespace {
+
+/// An integer among few.
+template <std::size_t count>
+void load_one_of(const TableReader& table, const char* key, const int (&values)[count], int& into) {
+  const auto value = table.integer(key, {values[0], values[count - 1]});
+  if (!value) return;
+  std::string words;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (values[k] == *value) {
+      into = values[k];
+      return;
+    }
+    words += (k == 0 ? "" : k + 1 < count ? ", " : " or ") + std::to_string(values[k]);
+  }
+  table.fail(key, "expected " + words + ", found " + std::to_string(*value));
+}
+
+} // namespace
+
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   const std::optional<TableReader> table = root.table("radiosity");
   if (!table) return;
@@ -107,6 +127,9 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto epsilon = table->number("epsilon", limits::epsilon)) radiosity.epsilon = *epsilon;
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
+  load_one_of(*table, "voxels", limits::voxel_sides, radiosity.voxels);
+  load_one_of(*table, "cones", limits::cone_counts, radiosity.cones);
+  if (const auto sides = table->boolean("anisotropic")) radiosity.anisotropic = *sides;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
   if (const auto samples = table->integer("light_samples", limits::light_samples))
     radiosity.light_samples = static_cast<int>(*samples);

@@ -1,4 +1,5 @@
 #include "host/tune/variant_list.h"
+#include "shared/cone_types.h"
 #include "shared/render_types.h"
 #include <algorithm>
 #include <map>
@@ -181,6 +182,10 @@ std::vector<ProgramUse> all_programs() {
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl"})
     uses.push_back({fmm_program(file), true, true});
+  uses.push_back({cones_program("radiosity/cones/voxelise.cl"), true, true});
+  for (const unsigned texels : {CONE_SIDES_ISOTROPIC, CONE_SIDES_ANISOTROPIC})
+    for (const char* file : {"radiosity/cones/pyramid.cl", "radiosity/cones/trace.cl", "test/cone_probe.cl"})
+      uses.push_back({cones_program(file, texels), true, true});
   for (const unsigned k : {64u, 512u, 1024u})
     for (const Program& program :
          {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})

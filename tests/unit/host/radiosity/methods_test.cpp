@@ -5,6 +5,7 @@
 #include "tests/support/run_program.h"
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <map>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -34,7 +35,10 @@ TEST_CASE("the loader takes every method and every key that a method reads, and 
   for (const RadiosityWords& row : radiosity_words())
     for (const std::string key : row.keys) {
       CAPTURE(row.method, key);
-      const std::string value = key == "vmap" ? "thesis" : key == "epsilon" || key == "tolerance" ? "0.125" : "5";
+      const std::map<std::string, std::string> values{{"vmap", "thesis"},     {"epsilon", "0.125"},
+                                                      {"tolerance", "0.125"}, {"anisotropic", "false"},
+                                                      {"voxels", "32"},       {"cones", "9"}};
+      const std::string value = values.count(key) != 0 ? values.at(key) : "5";
       CHECK_NOTHROW(load_scene(scene, {"radiosity." + key + "=" + value}));
       CHECK_THROWS_AS(load_scene(scene, {"radiosity." + key + "=[]"}), Error); // it is read, not passed over
     }
