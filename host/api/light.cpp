@@ -57,7 +57,7 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
     parts_->light = run_light_stages(session, from.ready.on_device, parts_->request(), stages);
   } else {
     indirect = run_indirect_stages(session, from.ready.on_device, parts_->request(), stages);
-    indirect.prepared.reset();
+    finish_exchange(parts_->request(), indirect);
   }
   if (!indirect.from_surfaces.empty()) {
     parts_->irradiance = upload_irradiance(session, indirect, from.scene);

@@ -38,6 +38,7 @@ struct SceneFeatures {
   unsigned material_flags = 0; ///< what these materials do: MATERIAL_...; kinds count only where one is specular
   unsigned gather_k = 0;       ///< of the picture: photons an estimate of caustics; 0: there are none
   bool sky_map = false;        ///< light from all around is a map
+  unsigned cone_texels = 0;    ///< of the picture: of a voxel, where pixels gather light between surfaces by cones
 
   bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };

@@ -138,17 +138,25 @@ void VoxelPyramid::sort_shares(const std::vector<VoxelShare>& shares, const std:
   begin_ = session_.upload(starts);
   splats_ = session_.upload(splats);
   areas_ = session_.upload(areas);
+  make_levels(std::move(occupied));
+}
+
+void VoxelPyramid::make_levels(std::vector<cl_uint> occupied) {
+  std::vector<cl_uchar> cells(voxels_.size / texels_);
   for (pg_uint level = 0;; ++level) {
     levels_.push_back(session_.upload(occupied));
-    if (level == grid_.side_log2) break;
-    const pg_uint log2 = grid_.side_log2 - level, mask = (1u << log2) - 1u, up = log2 - 1u;
+    const pg_uint log2 = grid_.side_log2 - level, mask = (1u << log2) - 1u, row = mask + 3u;
     for (cl_uint& number : occupied) {
       const pg_uint x = number & mask, y = number >> log2 & mask, z = number >> 2 * log2;
-      number = ((z >> 1 << up | y >> 1) << up) | x >> 1;
+      for (pg_uint k = 0; k < 8; ++k) // this is the (k + 1)-th of the eight of a sample
+        cells[grid_.first[level] + ((z + 1 - (k >> 2)) * row + y + 1 - (k >> 1 & 1u)) * row + x + 1 - (k & 1u)] = 1;
+      if (log2 > 0) number = ((z >> 1 << (log2 - 1) | y >> 1) << (log2 - 1)) | x >> 1;
     }
+    if (log2 == 0) break;
     std::sort(occupied.begin(), occupied.end());
     occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());
   }
+  cells_ = session_.upload(cells);
 }
 
 void VoxelPyramid::inject(View<cl_float4> radiosity) {

@@ -38,6 +38,8 @@ public:
   unsigned texels() const { return texels_; } ///< a voxel
   /// kernels/lib/cone.cl's `voxels`.
   const Buffer<cl_float4>& voxels() const { return voxels_; }
+  /// kernels/lib/cone.cl's `cells`.
+  const Buffer<cl_uchar>& cells() const { return cells_; }
   /// The splats as uploaded, in their order.
   const Buffer<OctreePoint>& points() const { return points_; }
   std::size_t occupied() const { return levels_.front().size; } ///< finest voxels that hold surface
@@ -48,6 +50,7 @@ private:
 
   std::vector<VoxelShare> voxelise(std::vector<cl_uint>& begin);
   void sort_shares(const std::vector<VoxelShare>& shares, const std::vector<cl_uint>& begin);
+  void make_levels(std::vector<cl_uint> occupied);
   void allocate_voxels();
 
   Session& session_;
@@ -59,6 +62,7 @@ private:
   Buffer<cl_uint> begin_, splats_; ///< of the finest voxels that hold surface: kernels/radiosity/cones/pyramid.cl
   Buffer<cl_float> areas_;
   Buffer<cl_float4> voxels_;
+  Buffer<cl_uchar> cells_;
   cl::Kernel inject_, average_;
   Pace injections_, averages_;
 };

@@ -7,7 +7,7 @@ const std::vector<RadiosityWords>& radiosity_words() {
   static const std::vector<RadiosityWords> all{
       {"fmm", {"order", "vmap_samples", "point_samples", "vmap_rays", "epsilon", "tolerance", "vmap"}},
       {"direct", {"tolerance"}},
-      {"cones", {"tolerance", "voxels", "cones", "anisotropic"}},
+      {"cones", {"tolerance", "voxels", "cones", "anisotropic", "at"}},
   };
   return all;
 }

@@ -163,9 +163,10 @@ struct RadiositySettings {
   double epsilon = 5e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
-  int voxels = 64;         ///< of method "cones": finest voxels a side of the cube around the scene
-  int cones = 6;           ///< of a point
-  bool anisotropic = true; ///< a voxel keeps its light an axis direction
+  int voxels = 64;                ///< of method "cones": finest voxels a side of the cube around the scene
+  int cones = 9;                  ///< of a point
+  bool anisotropic = true;        ///< a voxel keeps its light an axis direction
+  std::string at = "points";      ///< "pixels": cones of the picture's pixels, too, instead of light between points
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
   std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs
   std::optional<SourcePlace> place; ///< set when the file has the section

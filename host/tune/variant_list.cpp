@@ -152,7 +152,10 @@ std::vector<SceneFeatures> gpu_picture_features() {
     for (const bool sky_map : {false, true}) {
       SceneFeatures features = light;
       features.sky_map = sky_map;
-      add(features);
+      for (const unsigned texels : {0u, CONE_SIDES_ISOTROPIC, CONE_SIDES_ANISOTROPIC}) {
+        features.cone_texels = texels;
+        if (texels == 0 || features.radiosity) add(features);
+      }
     }
   return sets;
 }

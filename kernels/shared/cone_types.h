@@ -25,11 +25,12 @@ typedef struct ConeGrid {
 } ConeGrid;
 #define CONE_GRID_LEVELS(grid) ((grid)->side_log2 + 1u)
 
-/* One of the cones of a receiver, about the receiver's normal z. Each stands for the same share of cosine-weighted
- * light. */
+/* One of the cones of a receiver, about the receiver's normal z. */
 typedef struct Cone {
   float axis[3]; /* bytes 0-11: unit */
   float spread;  /* bytes 12-15: diameter over distance, 2 tan(half angle) */
+  float share;   /* bytes 16-19: of the irradiance; all add up to 1 */
+  pg_uint reserved[3];
 } Cone;
 
 /* A splat's part in a voxel. */

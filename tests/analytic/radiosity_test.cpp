@@ -195,5 +195,6 @@ TEST_CASE("radiosity runs where something shines, is kept, and gives the same bi
   CHECK_THAT(refused.err, Catch::Contains("direct_light") && Catch::Contains("method is \"none\""));
   const Run unknown = run_program("render " + scene + " --set radiosity.method=progressive", cache);
   CHECK(unknown.code == 3);
-  CHECK_THAT(unknown.err, Catch::Contains("expected \"fmm\", \"none\", \"direct\" or \"cones\", found \"progressive\""));
+  CHECK_THAT(unknown.err,
+             Catch::Contains("expected \"fmm\", \"none\", \"direct\" or \"cones\", found \"progressive\""));
 }

@@ -22,8 +22,8 @@ std::vector<std::uint32_t> all_of(std::size_t count) {
 }
 
 std::vector<double> irradiance(const std::vector<Splat>& splats, const std::vector<double>& radiosity,
-                               const VoxelOptions& options, unsigned cones = 6) {
-  DeviceCones exchange(session(), splats, all_of(splats.size()), options, cones);
+                               const VoxelOptions& options, unsigned cones = 9) {
+  ConeExchange exchange(session(), splats, all_of(splats.size()), options, cones);
   std::vector<double> h;
   exchange.apply(radiosity, LinearisationPoint::current, h);
   return h;
@@ -70,13 +70,13 @@ TEST_CASE("cones in a closed body find its walls: all of an even light comes bac
   for (const bool anisotropic : {false, true})
     for (const unsigned cones : {1u, 6u, 9u, 16u}) {
       CAPTURE(anisotropic, cones);
-      // exp(-5) = 0.7 % goes through a wall. With six texels the backs of a cube's walls darken what lies along its
-      // edges: 2 to 4 % of all.
+      // With six texels the backs of a cube's walls darken what lies along its edges: 1.5 to 6 % of all is lost; of the
+      // one wide cone a fifth.
       for (const std::vector<Splat>* splats : {&sphere, &cube}) {
         const double h = mean_of(
             *splats, irradiance(*splats, std::vector<double>(3 * splats->size(), 1.0), {64, anisotropic}, cones));
         CHECK(h < 1.0001);
-        CHECK(h > (!anisotropic ? 0.99 : splats == &sphere ? 0.98 : 0.95));
+        CHECK(h > (!anisotropic ? 0.99 : splats == &sphere ? 0.98 : cones == 1 ? 0.75 : 0.93));
       }
     }
 }
@@ -85,15 +85,14 @@ TEST_CASE("furnace by cones: B = E / (1 - rho), less what goes through the walls
   const std::vector<Splat> splats = inside_sphere(8000);
   for (const bool anisotropic : {false, true}) {
     Room room(splats, [&](const ClusterTree& tree, View<Link>) {
-      return std::make_unique<DeviceCones>(session(), tree.points, all_of(tree.points.size()),
-                                           VoxelOptions{64, anisotropic}, 6);
+      return std::make_unique<ConeExchange>(session(), tree.points, all_of(tree.points.size()),
+                                            VoxelOptions{64, anisotropic}, 9);
     });
     const Solution s = room.solve({1.0, 2.0, 0.25}, {0.5, 0.9, 0.0});
     CHECK(s.end == SolveEnd::converged);
-    // A bounce that keeps 1 - x of the light settles at E / (1 - rho (1 - x)): x = 0.4 % with one texel, 1.2 % with
-    // six.
-    CHECK(room.mean(s.radiosity, 0) == Approx(2.0).epsilon(anisotropic ? 0.015 : 0.006));
-    CHECK(room.mean(s.radiosity, 1) == Approx(20.0).epsilon(anisotropic ? 0.12 : 0.05));
+    // A bounce that keeps 1 - x of the light settles at E / (1 - rho (1 - x)): x is 0.05 % at most.
+    CHECK(room.mean(s.radiosity, 0) == Approx(2.0).epsilon(0.002));
+    CHECK(room.mean(s.radiosity, 1) == Approx(20.0).epsilon(0.01));
     CHECK(room.mean(s.radiosity, 2) == Approx(0.25).epsilon(1e-6));
   }
 }
@@ -106,7 +105,7 @@ TEST_CASE("cones in a room with a body: the mean of a ray a pair to 5 %, each po
   std::vector<double> truth;
   DeviceDirect(session(), pools, variant, splats, {}).apply(b, LinearisationPoint::current, truth);
   for (const bool anisotropic : {false, true})
-    for (const unsigned cones : {6u, 16u}) {
+    for (const unsigned cones : {9u, 16u}) {
       CAPTURE(anisotropic, cones);
       const std::vector<double> h = irradiance(splats, b, {64, anisotropic}, cones);
       CHECK(mean_of(splats, h) == Approx(mean_of(splats, truth)).epsilon(0.05)); // 20 % is asked for
@@ -125,10 +124,11 @@ TEST_CASE("what leaks through a thin wall, measured") {
     bool anisotropic;
     double voxels, most; ///< thickness of the wall; irradiance behind it, of 1 before it
   };
-  // One voxel and more: exp(-5) of the light. Two sheets in one place: one texel cannot tell their lights apart, and
-  // half of what is seen of the wall is the other side's; six can.
-  for (const Bound& bound : {Bound{false, 1.0, 0.01}, Bound{false, 0.25, 0.01}, Bound{false, 0.0, 0.25},
-                             Bound{true, 1.0, 0.015}, Bound{true, 0.25, 0.015}, Bound{true, 0.0, 0.03}}) {
+  // A cone that finds less of a slanting or coarse wall than all of it lets the rest through, 2 % whatever the wall's
+  // thickness. Two sheets in one place: one texel cannot tell their lights apart, and half of what is seen of the wall
+  // is the other side's. Six can.
+  for (const Bound& bound : {Bound{false, 1.0, 0.03}, Bound{false, 0.25, 0.03}, Bound{false, 0.0, 0.25},
+                             Bound{true, 1.0, 0.03}, Bound{true, 0.25, 0.03}, Bound{true, 0.0, 0.08}}) {
     CAPTURE(bound.anisotropic, bound.voxels);
     std::vector<Splat> splats;
     add_room(splats, {0.1, 0.1, 0.1}, {0.5 - 0.5 * bound.voxels * voxel, 0.9, 0.9});
@@ -137,8 +137,10 @@ TEST_CASE("what leaks through a thin wall, measured") {
     std::vector<double> b(3 * splats.size(), 0.0);
     std::fill_n(b.begin(), 3 * lit, 1.0);
     const std::vector<double> h = irradiance(splats, b, {64, bound.anisotropic});
-    CHECK(mean_of(splats, h, 0, lit) > 0.85);
+    CHECK(mean_of(splats, h, 0, lit) > 0.8);
     CHECK(mean_of(splats, h, lit, splats.size()) < bound.most);
+    std::printf("behind a wall of %.2f voxels, %s: %.4f of the light before it\n", bound.voxels,
+                bound.anisotropic ? "six texels" : "one texel", mean_of(splats, h, lit, splats.size()));
     if (bound.voxels == 0.0 && !bound.anisotropic) CHECK(mean_of(splats, h, lit, splats.size()) > 0.1); // a known ill
   }
 }
@@ -146,7 +148,7 @@ TEST_CASE("what leaks through a thin wall, measured") {
 TEST_CASE("cones are linear in the light, and give the same bits again") {
   const std::vector<Splat> splats = room_splats(2000);
   const std::vector<double> b = varied_radiosity(splats);
-  DeviceCones exchange(session(), splats, all_of(splats.size()), {64, true}, 6);
+  ConeExchange exchange(session(), splats, all_of(splats.size()), {64, true}, 9);
   std::vector<double> h, again, other(b.size(), 0.0), of_other, both(b);
   exchange.apply(b, LinearisationPoint::current, h);
   exchange.apply(b, LinearisationPoint::kept, again);
@@ -195,8 +197,8 @@ TEST_CASE("cones: what does not exchange light blocks it, is black, and gets non
           std::max(most[static_cast<std::size_t>(points[p].material)], field.irradiance[3 * p]);
     return most;
   };
-  // Between two squares of side 0.2 at distance 0.5, albedo 0.5: about 0.5 A / (pi d^2) = 0.025 in the middle. A cone
-  // of the six is wider than the square, and its voxels spread the square's edges.
+  // Between two squares of side 0.2 at distance 0.5, albedo 0.5: about 0.5 A / (pi d^2) = 0.025 in the middle. Cones
+  // are wider than the square: few points find it, and then all of a cone's share of it.
   const float open = found_with({1, 1})[1];
   CHECK(open > 0.01f);
   CHECK(open < 0.1f);

@@ -39,6 +39,7 @@ void make_picture(Session& session, Scene scene, const std::optional<LightPaths>
   if (!light.indirect.from_surfaces.empty()) {
     irradiance = upload_irradiance(session, light.indirect, scene);
     request.irradiance = &irradiance;
+    request.cones = light.indirect.at_pixels ? &*light.indirect.at_pixels : nullptr;
     request.shadow_rays = !direct_light_by_radiosity(scene);
   }
   request.normal_field = light.normal_field ? &*light.normal_field : nullptr;
@@ -62,7 +63,7 @@ TEST_CASE("every program that a GPU is asked for when the demo is rendered is ch
       load_scene(POINTGI_SOURCE_DIR "/scenes/demo/room.toml",
                  {"render.size=[8,8]", "render.spp=1", "caustics.photons=20000", "radiosity.epsilon=0.1"});
   make_picture(session, scene, std::nullopt);
-  Scene thesis = scene, bare = scene, direct = scene;
+  Scene thesis = scene, bare = scene, cones = scene;
   thesis.radiosity.direct_light = "radiosity";
   thesis.caustics.power = "equal";
   thesis.caustics.gather_k = 50;
@@ -70,6 +71,9 @@ TEST_CASE("every program that a GPU is asked for when the demo is rendered is ch
   bare.radiosity.method = "none";
   bare.caustics.photons = 0;
   make_picture(session, bare, std::nullopt);
+  cones.radiosity.method = "cones";
+  cones.radiosity.at = "pixels";
+  make_picture(session, cones, std::nullopt);
   make_picture(session, scene, light_paths("", scene.render.max_depth));
   make_picture(session, scene, light_paths("LDE", scene.render.max_depth));
   spdlog::set_level(level);

@@ -35,9 +35,9 @@ TEST_CASE("the loader takes every method and every key that a method reads, and 
   for (const RadiosityWords& row : radiosity_words())
     for (const std::string key : row.keys) {
       CAPTURE(row.method, key);
-      const std::map<std::string, std::string> values{{"vmap", "thesis"},     {"epsilon", "0.125"},
-                                                      {"tolerance", "0.125"}, {"anisotropic", "false"},
-                                                      {"voxels", "32"},       {"cones", "9"}};
+      const std::map<std::string, std::string> values{
+          {"vmap", "thesis"}, {"epsilon", "0.125"}, {"tolerance", "0.125"}, {"anisotropic", "false"},
+          {"voxels", "32"},   {"cones", "9"},       {"at", "pixels"}};
       const std::string value = values.count(key) != 0 ? values.at(key) : "5";
       CHECK_NOTHROW(load_scene(scene, {"radiosity." + key + "=" + value}));
       CHECK_THROWS_AS(load_scene(scene, {"radiosity." + key + "=[]"}), Error); // it is read, not passed over
