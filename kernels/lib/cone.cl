@@ -17,20 +17,11 @@
 #ifndef CONE_LIFT
 #define CONE_LIFT 1.5f /* voxels that a cone's apex is moved along the receiver's normal: as far as its own voxel reaches */
 #endif
-/* Widest samples, by their height above the receiver's plane: of what faces away from the viewer, as the receiver's own surface
- * does, and of what faces him. With one texel a voxel both are one. */
 #ifndef CONE_CLEARANCE
-#define CONE_CLEARANCE 0.25f
-#endif
-#ifndef CONE_FACING_CLEARANCE
-#if CONE_SIDES == 1
-#define CONE_FACING_CLEARANCE CONE_CLEARANCE
-#else
-#define CONE_FACING_CLEARANCE 0.5f
-#endif
+#define CONE_CLEARANCE 0.5f /* widest sample, by its height above the receiver's plane: wider ones meet the receiver's own surface */
 #endif
 #ifndef CONE_STEP
-#define CONE_STEP 1.0f /* by the least width of a sample: interpolated over twice that, samples add up to the whole density */
+#define CONE_STEP 1.0f /* by the width of a sample: interpolated over twice that, samples add up to the whole density */
 #endif
 #define CONE_LEAST_CLEARNESS 0.01f /* the cone ends where a > 0.99 */
 
@@ -59,25 +50,24 @@ static inline ConeView cone_view(float3 direction) {
   return view;
 }
 
-/* Adds `share` of a voxel: of its surface that faces away, or the rest of it. */
-static inline void add_voxel(const __global float4* voxels, uint voxel, float share, ConeView view, bool away,
+/* Adds shares of a voxel, of what faces the viewer and of what faces away. */
+static inline void add_voxel(const __global float4* voxels, uint voxel, float facing, float away, ConeView view,
                              ConeSample* sample) {
 #if CONE_SIDES == 1
-  sample->facing += share * voxels[voxel];
+  sample->facing += facing * voxels[voxel];
 #else
   const __global float4* texels = voxels + (size_t)CONE_SIDES * voxel;
-  const float3 weight = share * view.cosine;
-  if (away)
-    sample->away += weight.x * texels[view.facing.x ^ 1u].w + weight.y * texels[view.facing.y ^ 1u].w +
-                    weight.z * texels[view.facing.z ^ 1u].w;
-  else
-    sample->facing += weight.x * texels[view.facing.x] + weight.y * texels[view.facing.y] + weight.z * texels[view.facing.z];
+  sample->facing += facing * (view.cosine.x * texels[view.facing.x] + view.cosine.y * texels[view.facing.y] +
+                              view.cosine.z * texels[view.facing.z]);
+  if (away > 0.0f)
+    sample->away += away * (view.cosine.x * texels[view.facing.x ^ 1u].w + view.cosine.y * texels[view.facing.y ^ 1u].w +
+                            view.cosine.z * texels[view.facing.z ^ 1u].w);
 #endif
 }
 
-/* Adds `share` of what a level holds at a place, voxels from the grid's corner: between eight voxels. */
-static inline void add_level(ConeVoxels from, __constant ConeGrid* grid, uint level, float3 at, float share, ConeView view,
-                             bool away, ConeSample* sample) {
+/* Adds shares of what a level holds at a place, voxels from the grid's corner: between eight voxels. */
+static inline void add_level(ConeVoxels from, __constant ConeGrid* grid, uint level, float3 at, float facing, float away,
+                             ConeView view, ConeSample* sample) {
   const uint side = (1u << grid->side_log2) >> level, row = side + 2u;
   /* The middle of voxel i is at i + 0.5; with the border it is number i + 1. */
   const float3 place = clamp(at / (float)(1u << level) + 0.5f, 0.0f, (float)side + 1.0f);
@@ -86,33 +76,25 @@ static inline void add_level(ConeVoxels from, __constant ConeGrid* grid, uint le
   if (from.cells[voxel] == 0)
     return;
   for (uint k = 0u; k < 8u; ++k) {
-    const float x = k & 1u ? part.x : rest.x, y = k & 2u ? part.y : rest.y, z = k & 4u ? part.z : rest.z;
-    add_voxel(from.voxels, voxel + ((k >> 2u) * row + (k >> 1u & 1u)) * row + (k & 1u), share * x * y * z, view, away, sample);
+    const float share = (k & 1u ? part.x : rest.x) * (k & 2u ? part.y : rest.y) * (k & 4u ? part.z : rest.z);
+    const uint corner = voxel + ((k >> 2u) * row + (k >> 1u & 1u)) * row + (k & 1u);
+    add_voxel(from.voxels, corner, share * facing, share * away, view, sample);
   }
 }
 
-/* Adds what stands at a place, as wide as `width` >= 1 voxels, between two levels. */
-static inline void add_density(ConeVoxels from, __constant ConeGrid* grid, float3 at, float width, ConeView view, bool away,
-                               ConeSample* sample) {
+/* At a place, as wide as `width` >= 1 voxels: flux towards the viewer, and density of surface, between two levels. Of closed
+ * bodies as much faces away as faces the viewer, and lies behind it; only what more faces away is black and hides what is
+ * behind. It comes from the finer level alone: the coarser one reaches back to the receiver's own surface. */
+static inline float4 cone_density(ConeVoxels from, __constant ConeGrid* grid, float3 at, float width, ConeView view) {
   const float number = clamp(log2(width), 0.0f, (float)grid->side_log2);
   const uint level = min((uint)number, grid->side_log2);
   const float next = number - (float)level;
-  add_level(from, grid, level, at, 1.0f - next, view, away, sample);
-  if (next > 0.0f)
-    add_level(from, grid, level + 1u, at, next, view, away, sample);
-}
-
-/* At a place: flux towards the viewer, and density of surface. Of closed bodies as much faces away as faces the viewer, and
- * lies behind it; only what more faces away is black and hides what is behind. */
-static inline float4 cone_density(ConeVoxels from, __constant ConeGrid* grid, float3 at, float facing_width, float away_width,
-                                  ConeView view) {
   ConeSample sample;
   sample.facing = (float4)(0.0f);
   sample.away = 0.0f;
-  add_density(from, grid, at, facing_width, view, false, &sample);
-#if CONE_SIDES > 1
-  add_density(from, grid, at, away_width, view, true, &sample);
-#endif
+  add_level(from, grid, level, at, 1.0f - next, 1.0f, view, &sample);
+  if (next > 0.0f)
+    add_level(from, grid, level + 1u, at, next, 0.0f, view, &sample);
   return (float4)(sample.facing.xyz, fmax(sample.facing.w, sample.away));
 }
 
@@ -126,14 +108,12 @@ static inline float4 trace_cone(ConeVoxels from, __constant ConeGrid* grid, floa
   float3 seen = (float3)(0.0f);
   float clear = 1.0f, t = 0.0f;
   while (clear > CONE_LEAST_CLEARNESS) {
-    const float above = fma(rise, t, height);
-    const float facing_width = fmax(1.0f, fmin(spread * t, CONE_FACING_CLEARANCE * above));
-    const float away_width = fmax(1.0f, fmin(spread * t, CONE_CLEARANCE * above)), step = CONE_STEP * away_width;
+    const float width = fmax(1.0f, fmin(spread * t, CONE_CLEARANCE * fma(rise, t, height))), step = CONE_STEP * width;
     const float3 place = fma((float3)(t + 0.5f * step), direction, apex);
     /* Wide samples reach the voxels from outside. */
-    if (!all(place > -facing_width) || !all(place < side + facing_width))
+    if (!all(place > -width) || !all(place < side + width))
       break;
-    const float4 density = cone_density(from, grid, place, facing_width, away_width, view);
+    const float4 density = cone_density(from, grid, place, width, view);
     if (density.w > 0.0f) {
       const float opacity = fmin(CONE_COVER * density.w * step, clear);
       seen += opacity / density.w * density.xyz;
