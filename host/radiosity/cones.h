@@ -7,7 +7,8 @@
 namespace pointgi {
 
 /// Cones about the normal z that cover the hemisphere, in rings of 1, 1 + 5, 3 + 6 or 1 + 5 + 10: angles to the normal
-/// and shares are a quadrature of cosine-weighted directions, and a cone has the solid angle of its ring's part. Throws std::invalid_argument for a number that is not among limits::cone_counts.
+/// and shares are a quadrature of cosine-weighted directions, and a cone has the solid angle of its ring's part. Throws
+/// std::invalid_argument for a number that is not among limits::cone_counts.
 std::vector<Cone> cone_set(unsigned count);
 
 /// Injects B, averages it upwards, and traces the cones of every point that exchanges light. Linear in B.

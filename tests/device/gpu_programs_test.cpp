@@ -112,6 +112,7 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
         if (!f.specular() && (bit(6) || bit(7) || k > 0)) continue;
         if (!f.shadow_rays && !f.radiosity) continue;
         if (k > 0 && f.lights == 0 && !f.emitters && !f.environment && !f.radiosity) continue; // light brings photons
+        f.cone_texels = !f.radiosity ? 0u : k == 50u ? 6u : k == 400u ? 1u : 0u;
         const SceneFeatures given = features_on(gpu, f);
         const TraversalVariant v = plain_variant(form);
         CAPTURE(bits, k);
@@ -123,6 +124,7 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
         if (f.specular()) CHECK((given.material_flags & f.material_flags) == f.material_flags);
         CHECK(given.sky_map == f.sky_map);
         CHECK(given.radiosity == f.radiosity);
+        CHECK(given.cone_texels == f.cone_texels);
         CHECK(given.shadow_rays == f.shadow_rays);
         CHECK(shade_program(v, features_on(cpu, f)).options == shade_program(v, f).options);
       }
