@@ -56,11 +56,12 @@ PixelWindow window_of(const FilmOptions& options, const RenderSettings& render) 
 std::string settings_text(const pointgi::Scene& scene, const std::string& integrator, const std::string& paths) {
   const RadiositySettings& r = scene.radiosity;
   const CausticSettings& c = scene.caustics;
-  const std::string radiosity = fmt::format(
-      "{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {}", r.method, r.order, r.vmap_samples,
-      r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap, r.direct_light,
-      r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.sampling, r.window,
-      r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility, r.voxels, r.passes);
+  const std::string radiosity =
+      fmt::format("{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {} {} {} {}", r.method, r.order,
+                  r.vmap_samples, r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap,
+                  r.direct_light, r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.sampling,
+                  r.window, r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility, r.voxels,
+                  r.passes, r.cones, r.anisotropic, r.at);
   return fmt::format("{} {} {}; {}; {} {} {} {:a} {} {}", integrator, paths,
                      name_of(scene.camera.backfaces.value_or(Backfaces::shade)), radiosity, c.photons, c.gather_k,
                      c.power, c.max_radius.value_or(0.0), c.feedback, c.indirect);
@@ -101,6 +102,7 @@ FilmJob::FilmJob(Light::Parts& light, const FilmOptions& options)
   request_->backfaces = view_.camera.backfaces.value_or(Backfaces::shade);
   if (light.irradiance.size > 0) {
     request_->irradiance = &light.irradiance;
+    request_->cones = light.light.indirect.at_pixels ? &*light.light.indirect.at_pixels : nullptr;
     request_->shadow_rays = !direct_light_by_radiosity(view_);
   }
   request_->normal_field = light.light.normal_field ? &*light.light.normal_field : nullptr;

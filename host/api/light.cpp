@@ -76,7 +76,7 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
         write_lit_ply(name_of_pass(options.pass_file, pass), from.scene, from.ready, lit);
       };
     indirect = run_indirect_stages(session, from.ready.on_device, request, stages);
-    indirect.prepared.reset();
+    finish_exchange(parts_->request(), indirect);
   }
   if (!indirect.from_surfaces.empty()) {
     parts_->irradiance = upload_irradiance(session, indirect, from.scene);

@@ -61,6 +61,10 @@ ExitCode run_bake(const BakeOptions& options) {
   const bool specular = prepared.parts()->ready.lighting.has_specular();
   if (description.caustics.place && specular)
     spdlog::warn("{}: [caustics] has no effect: a lit cloud holds no caustics", description.caustics.place->text());
+  if (description.radiosity.method == "cones" && description.radiosity.at == "pixels")
+    spdlog::warn(
+        "{}: radiosity.at = \"pixels\" has no effect: a lit cloud has no pixels, its light is that of the points",
+        description.radiosity.place->text());
   api::LitFileOptions content{description.render.exposure, options.sky};
   if (description.render.auto_exposure) content.exposure.reset();
   api::LightOptions solving{false, false};

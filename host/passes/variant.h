@@ -39,6 +39,7 @@ struct SceneFeatures {
   unsigned material_flags = 0; ///< what these materials do: MATERIAL_...; kinds count only where one is specular
   unsigned gather_k = 0;       ///< of the picture: photons an estimate of caustics; 0: there are none
   bool sky_map = false;        ///< light from all around is a map
+  unsigned cone_texels = 0;    ///< of the picture: of a voxel, where pixels gather light between surfaces by cones
 
   bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };
@@ -97,6 +98,8 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 
 /// Radiosity: a file of kernels/radiosity/fmm or kernels/radiosity/direct; nothing in it depends on the traversal.
 Program fmm_program(const char* file);
+/// Voxel cone tracing: a file of kernels/radiosity/cones. `texels`: of a voxel; 0 for voxelise.cl, which does not ask.
+Program cones_program(const char* file, unsigned texels = 0);
 
 /// Where photons set out.
 enum class PhotonStart {

@@ -2,6 +2,7 @@
 /// Light that diffuse surfaces send each other, solved once for all views (method.md §3, §4): what a method of solving
 /// it is. A method is a folder of kernels/radiosity, a file here, and a row of methods.cpp.
 #include "fmm/solve/solve.h"
+#include "host/passes/device_cones.h"
 #include "host/passes/device_pools.h"
 #include "host/radiosity/radiosity_map.h"
 #include "host/scene/lighting.h"
@@ -46,6 +47,11 @@ public:
   /// the same bits, whatever was solved before. Throws std::invalid_argument on sizes that differ, Error(device),
   /// Error(memory).
   virtual RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) = 0;
+
+  /// What pixels gather the light between surfaces with (radiosity.at = "pixels") when these radiosities leave the
+  /// surfaces: `radiosity` [points x 3] as EnteringLight. Absent of methods of which pixels interpolate the points'
+  /// irradiance, and where nothing exchanges light. Nothing may be solved for after that.
+  virtual std::optional<DeviceCones> cones_of(View<float>) { return std::nullopt; }
 
   /// Rays that decided who sees whom, now or in an earlier run. Solving traces none.
   virtual std::uint64_t rays() const = 0;

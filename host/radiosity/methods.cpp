@@ -3,10 +3,11 @@
 namespace pointgi {
 
 // Each in the file of its name.
-extern const RadiosityMethod fmm_method, directions_method, gather_method, direct_method;
+extern const RadiosityMethod fmm_method, directions_method, gather_method, cones_method, direct_method;
 
 const std::vector<const RadiosityMethod*>& radiosity_methods() {
-  static const std::vector<const RadiosityMethod*> all{&fmm_method, &directions_method, &gather_method, &direct_method};
+  static const std::vector<const RadiosityMethod*> all{&fmm_method, &directions_method, &gather_method, &cones_method,
+                                                       &direct_method};
   return all;
 }
 

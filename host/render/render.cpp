@@ -150,7 +150,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
                     const std::function<bool()>& stop) {
   TileRenderer tiles(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
                      request.irradiance, request.shadow_rays, request.normal_field,
-                     request.has_caustics() ? request.photons : nullptr, request.backfaces);
+                     request.has_caustics() ? request.photons : nullptr, request.backfaces, request.cones);
   const std::size_t channels =
       film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()).size();
   const PixelWindow& window = request.window;

@@ -1,6 +1,7 @@
 #pragma once
 /// The render stage: a window of the image, band after band (kernels/render).
 #include "host/image/picture_writer.h"
+#include "host/passes/device_cones.h"
 #include "host/passes/device_pools.h"
 #include "host/photon/device_photon_map.h"
 #include "host/render/light_paths.h"
@@ -48,7 +49,8 @@ struct RenderRequest {
   TraversalVariant variant;
   std::optional<LightPaths> paths;               ///< by path tracing, of these; else direct light and `irradiance`
   const Buffer<cl_float4>* irradiance = nullptr; ///< of each point of the pool, from surfaces; null: none
-  bool shadow_rays = true; ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
+  const DeviceCones* cones = nullptr; ///< by which pixels gather light between surfaces besides; null: they do not
+  bool shadow_rays = true;            ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
   const Buffer<cl_float4>* normal_field = nullptr; ///< slopes of each point's normal; null: nothing is specular
 
   const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none

@@ -8,9 +8,12 @@ namespace {
 
 /// POOL_PARAMS of kernels/lib/pools.cl, in its order.
 std::vector<cl::Memory> pool_arguments(const DevicePools& pools, const Buffer<cl_float4>* irradiance,
-                                       const Buffer<cl_float4>* normal_field, const DevicePhotonMap* photons) {
+                                       const Buffer<cl_float4>* normal_field, const DevicePhotonMap* photons,
+                                       const DeviceCones* cones) {
   std::vector<cl::Memory> all{pools.nodes, pools.leaves, pools.points};
   if (irradiance != nullptr) all.push_back(irradiance->handle);
+  if (cones != nullptr)
+    all.insert(all.end(), {cones->grid.handle, cones->cones.handle, cones->voxels.handle, cones->cells.handle});
   if (normal_field != nullptr) all.push_back(normal_field->handle);
   if (photons != nullptr)
     all.insert(all.end(),
@@ -23,10 +26,11 @@ std::vector<cl::Memory> pool_arguments(const DevicePools& pools, const Buffer<cl
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
                            const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
-                           const DevicePhotonMap* photons, Backfaces backfaces)
-    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr)),
-      points_(pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons)), params_(lighting.params),
-      grouping_(variant.grouping), eye_group_(variant.group), shade_group_(paths ? WorkGroup{} : variant.group),
+                           const DevicePhotonMap* photons, Backfaces backfaces, const DeviceCones* cones)
+    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr, nullptr)),
+      points_(pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons, paths ? nullptr : cones)),
+      params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
+      shade_group_(paths ? WorkGroup{} : variant.group),
       film_channels_(photons != nullptr        ? FILM_CHANNELS_CAUSTIC
                      : normal_field != nullptr ? FILM_CHANNELS_SPECULAR
                                                : FILM_CHANNELS) {
@@ -37,6 +41,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
                          !lighting.emitters.empty(), asks_lights && lighting.has_environment,
                          !paths && irradiance != nullptr, asks_lights};
   features.sky_map = lighting.sky != nullptr;
+  if (!paths && cones != nullptr) features.cone_texels = cones->texels;
   if (normal_field != nullptr) {
     features.materials = lighting.material_types;
     features.material_flags = lighting.flags;

@@ -1,5 +1,6 @@
 #pragma once
 /// A tile of the picture on the device: hits of its eye rays, then its film.
+#include "host/passes/device_cones.h"
 #include "host/passes/device_lights.h"
 #include "host/passes/device_pools.h"
 #include "host/photon/device_photon_map.h"
@@ -19,14 +20,14 @@ struct TileSeconds {
 class TileRenderer {
 public:
   /// `side`: of the root cube, world units; `paths`: by path tracing; else
-  /// `irradiance`, of each point, is reflected too where it is there, and instead of shadow rays' light without
-  /// `shadow_rays`. Without a `normal_field` no surface is specular: all but diffuse ones look black.
-  /// Builds the programs where they are not built yet.
+  /// `irradiance`, of each point, is reflected too where it is there, and what pixels gather by `cones`, and instead of
+  /// shadow rays' light without `shadow_rays`. Without a `normal_field` no surface is specular: all but diffuse ones
+  /// look black. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
                const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
                const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr,
-               Backfaces backfaces = Backfaces::shade);
+               Backfaces backfaces = Backfaces::shade, const DeviceCones* cones = nullptr);
 
   pg_uint samples() const { return params_.samples; }
 

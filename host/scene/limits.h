@@ -33,10 +33,12 @@ inline constexpr IntegerRange vmap_samples{1, 256};
 inline constexpr IntegerRange point_samples{0, 65536};
 inline constexpr IntegerRange vmap_rays{0, 1'000'000'000'000};
 inline constexpr IntegerRange window{1, 1'000'000};
-inline constexpr IntegerRange voxels{32, 256};
 inline constexpr IntegerRange passes{0, 10'000};
 inline constexpr IntegerRange directions{1, 65536};
 inline constexpr IntegerRange light_samples = spp;
+/// Of radiosity.method = "cones": finest voxels a side, and cones of a point. An occupancy grid has 128 at most.
+inline constexpr int voxel_sides[] = {32, 64, 128, 256};
+inline constexpr int cone_counts[] = {1, 6, 9, 16};
 inline constexpr IntegerRange photons{0, 100'000'000};
 inline constexpr IntegerRange gather_k{1, 1024};
 inline constexpr IntegerRange leaf_capacity{1, 4096};

@@ -89,6 +89,24 @@ void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
                                (up == UpAxis::y || up == UpAxis::minus_y ? "z" : "y") + "\"");
 }
 
+namespace {
+
+/// An integer among few.
+template <std::size_t count>
+void load_one_of(const TableReader& table, const char* key, const int (&values)[count], int& into) {
+  const auto value = table.integer(key, {values[0], values[count - 1]});
+  if (!value) return;
+  std::string words;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (values[k] == *value) {
+      into = values[k];
+      return;
+    }
+    words += (k == 0 ? "" : k + 1 < count ? ", " : " or ") + std::to_string(values[k]);
+  }
+  table.fail(key, "expected " + words + ", found " + std::to_string(*value));
+}
+
 void load_gather(const TableReader& table, RadiositySettings& radiosity) {
   if (const auto sampling = table.choice("sampling", {"all", "static", "monte_carlo", "mipmap", "adaptive"}))
     radiosity.sampling = *sampling;
@@ -96,7 +114,7 @@ void load_gather(const TableReader& table, RadiositySettings& radiosity) {
   radiosity.reciprocity = table.boolean("reciprocity");
   radiosity.visibility_cache = table.boolean("visibility_cache");
   if (const auto visibility = table.choice("visibility", {"rays", "voxels"})) radiosity.visibility = *visibility;
-  if (const auto voxels = table.integer("voxels", limits::voxels)) radiosity.voxels = static_cast<int>(*voxels);
+  load_one_of(table, "voxels", limits::voxel_sides, radiosity.voxels);
   if (radiosity.visibility == "voxels" && radiosity.voxels != 32 && radiosity.voxels != 64 && radiosity.voxels != 128)
     table.fail("voxels", "visibility = \"voxels\" marches through 32, 64 or 128 voxels a side");
   if (const auto passes = table.integer("passes", limits::passes)) radiosity.passes = static_cast<int>(*passes);
@@ -109,6 +127,8 @@ void load_gather(const TableReader& table, RadiositySettings& radiosity) {
                                        "\" asks for other pairs in each pass; leave visibility_cache out, or choose "
                                        "\"all\", \"static\" or \"mipmap\"");
 }
+
+} // namespace
 
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   const std::optional<TableReader> table = root.table("radiosity");
@@ -132,6 +152,9 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto set = table->choice("direction_set", {"stratified", "hemicube"})) radiosity.direction_set = *set;
   load_gather(*table, radiosity);
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;
+  load_one_of(*table, "cones", limits::cone_counts, radiosity.cones);
+  if (const auto sides = table->boolean("anisotropic")) radiosity.anisotropic = *sides;
+  if (const auto at = table->choice("at", {"points", "pixels"})) radiosity.at = *at;
   if (const auto direct = table->choice("direct_light", {"shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
   if (const auto share = table->number("least_share", limits::least_share)) radiosity.least_share = *share;
   if (const auto samples = table->integer("light_samples", limits::light_samples))

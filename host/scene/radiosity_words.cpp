@@ -9,6 +9,7 @@ const std::vector<RadiosityWords>& radiosity_words() {
       {"directions", {"directions", "direction_set", "tolerance"}},
       {"gather",
        {"sampling", "window", "reciprocity", "visibility_cache", "visibility", "voxels", "passes", "tolerance"}},
+      {"cones", {"tolerance", "voxels", "cones", "anisotropic", "at"}},
       {"direct", {"tolerance"}},
   };
   return all;

@@ -171,9 +171,12 @@ struct RadiositySettings {
   std::optional<bool> reciprocity;      ///< one ray a pair for both directions; absent: where all send
   std::optional<bool> visibility_cache; ///< kept for later passes; absent: where these ask for the same pairs
   std::string visibility = "rays";      ///< or "voxels": by marching through an occupancy grid
-  int voxels = 64;                      ///< a side of that grid
+  int voxels = 64;                      ///< a side of that grid, and of the finest of method "cones"
   int passes = 0;                       ///< bounces, at most; 0: until the tolerance is reached
   std::string vmap = "fractions"; ///< "thesis": one segment a pair of clusters, between their centroids (method.md §3)
+  int cones = 9;                  ///< of a point
+  bool anisotropic = true;        ///< a voxel keeps its light an axis direction
+  std::string at = "points";      ///< "pixels": cones of the picture's pixels, too, instead of light between points
   std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
   std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs
   std::optional<SourcePlace> place; ///< set when the file has the section

@@ -101,6 +101,7 @@ bool direct_light_by_radiosity(const Scene& scene) {
 
 Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light, const Scene& scene) {
   std::vector<float> sum = light.from_surfaces;
+  if (light.at_pixels) std::fill(sum.begin(), sum.end(), 0.0f);
   for (std::size_t i = 0; i < sum.size() && direct_light_by_radiosity(scene); ++i)
     sum[i] += light.direct[i];
   std::vector<cl_float4> texels(sum.size() / 3);
@@ -239,6 +240,7 @@ RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, c
     };
   RadiosityField field = light.prepared->solve({entering, emitted}, settings.tolerance, watch.report());
   light.prepared->after_pass = {};
+  light.entered = std::move(entering);
   stages.finish(request.points.size, "points");
   return field;
 }
@@ -331,14 +333,30 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   StageWatch watch(session);
   const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
   RadiosityField field = light.prepared->solve({entering, {}}, tolerance, watch.report());
-  for (std::size_t i = 0; i < light.from_surfaces.size(); ++i)
+  for (std::size_t i = 0; i < light.from_surfaces.size(); ++i) {
     light.from_surfaces[i] += field.irradiance[i];
+    light.entered[i] += entering[i];
+  }
   light.solution.applies += field.solution.applies;
   if (field.solution.end != SolveEnd::converged) light.solution.end = field.solution.end;
   light.rays = light.prepared->rays();
   stages.finish(request.points.size, "points");
   report_solution(light, field.solution);
   return std::move(field.irradiance);
+}
+
+void finish_exchange(const IndirectRequest& request, IndirectLight& light) {
+  if (light.prepared != nullptr) {
+    std::vector<float> radiosity = reflected_radiosity(request, {light.entered, light.from_surfaces});
+    if (direct_light_by_radiosity(request.scene)) {
+      const std::vector<float> emitted = emitted_radiosity(request.lighting, request.points);
+      for (std::size_t i = 0; i < radiosity.size(); ++i)
+        radiosity[i] += emitted[i];
+    }
+    light.at_pixels = light.prepared->cones_of(radiosity);
+  }
+  light.entered = {};
+  light.prepared.reset();
 }
 
 } // namespace pointgi

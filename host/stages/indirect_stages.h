@@ -17,6 +17,8 @@ struct IndirectLight {
   std::uint64_t rays = 0; ///< that decided which points see each other
   std::vector<MethodStatistic> statistics;
   const RadiosityMethod* method = nullptr;     ///< that solved it, or would
+  std::vector<float> entered;                  ///< all irradiance that surfaces passed on besides from_surfaces
+  std::optional<DeviceCones> at_pixels;        ///< by which pixels gather from_surfaces themselves; absent: they do not
   std::unique_ptr<PreparedRadiosity> prepared; ///< by which it was solved, for light that enters besides
 };
 
@@ -47,6 +49,9 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
 std::vector<float> add_exchange(Session& session, const IndirectRequest& request, View<float> entering, double share,
                                 IndirectLight& light, StageLog& stages);
 
+/// No more light will enter: keeps what pixels need of the method, and lets go of the rest.
+void finish_exchange(const IndirectRequest& request, IndirectLight& light);
+
 /// Of each material, whether its splats send and receive diffuse light.
 std::vector<std::uint8_t> exchanging_materials(const Scene& scene);
 
@@ -56,7 +61,8 @@ bool has_reflectors(const Scene& scene, View<Splat> points);
 /// Whether direct light comes with the points' irradiance, as coarse as its splats (the thesis' way, method.md §6).
 bool direct_light_by_radiosity(const Scene& scene);
 
-/// The irradiance that the picture interpolates: from surfaces, and the direct light where it comes that way.
+/// The irradiance that the picture interpolates: from surfaces, where pixels do not gather it themselves, and the
+/// direct light where it comes that way.
 Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light, const Scene& scene);
 
 /// IndirectLight::direct where no stage of these has found it, because no surface sends any light to another.

@@ -58,11 +58,11 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
     wanted.caustic = caustic;
   }
   light.indirect = run_indirect_stages(session, pools, wanted, stages);
-  if (!settings.feedback || !settings.indirect) light.indirect.prepared.reset(); // no light will enter besides
+  if (!settings.feedback || !settings.indirect) finish_exchange(wanted, light.indirect);
   if (!photons_first) send_photons();
   if (settings.indirect && caustics.ledger && !light.indirect.from_surfaces.empty())
     add_rounds(session, pools, wanted, light, caustics, stages);
-  light.indirect.prepared.reset();
+  finish_exchange(wanted, light.indirect);
   light.photons = upload_caustics(session, caustics, request, stages);
   light.ledger = caustics.ledger;
   return light;

@@ -1,4 +1,5 @@
 #include "host/tune/variant_list.h"
+#include "shared/cone_types.h"
 #include "shared/render_types.h"
 #include <algorithm>
 #include <map>
@@ -156,7 +157,10 @@ std::vector<SceneFeatures> gpu_picture_features() {
     for (const bool sky_map : {false, true}) {
       SceneFeatures features = light;
       features.sky_map = sky_map;
-      add(features);
+      for (const unsigned texels : {0u, CONE_SIDES_ISOTROPIC, CONE_SIDES_ANISOTROPIC}) {
+        features.cone_texels = texels;
+        if (texels == 0 || features.radiosity) add(features);
+      }
     }
   return sets;
 }
@@ -199,6 +203,10 @@ std::vector<ProgramUse> all_programs() {
     for (const Program& program :
          {pairs_program({}, voxels), senders_program({}, voxels, false), senders_program({}, voxels, true)})
       uses.push_back({program, true, true});
+  uses.push_back({cones_program("radiosity/cones/voxelise.cl"), true, true});
+  for (const unsigned texels : {CONE_SIDES_ISOTROPIC, CONE_SIDES_ANISOTROPIC})
+    for (const char* file : {"radiosity/cones/pyramid.cl", "radiosity/cones/trace.cl", "test/cone_probe.cl"})
+      uses.push_back({cones_program(file, texels), true, true});
   for (const unsigned k : {64u, 512u, 1024u})
     for (const Program& program :
          {nearest_photons_program(k), caustic_irradiance_program(k), caustics_of_points_program(k)})

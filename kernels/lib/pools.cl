@@ -15,6 +15,7 @@
 #ifndef POOL_WIDTH_LOG2
 #define POOL_WIDTH_LOG2 12 /* texels a row of the image2d form, log2 */
 #endif
+#include "shared/cone_types.h"
 #include "shared/octree_types.h"
 #include "shared/photon_types.h"
 
@@ -77,14 +78,25 @@ static inline uint pool_component(uint4 texel, uint i) {
 #define LIT_PARAMS OCTREE_PARAMS
 #endif
 
+#ifdef HAS_CONES
+/* And the light of surfaces in voxels, with the cones of a pixel (kernels/lib/cone.cl). */
+#define VOXEL_ARGS LIT_ARGS, cone_grid, cone_set, cone_voxels, cone_cells
+#define VOXEL_PARAMS \
+  LIT_PARAMS, __constant ConeGrid *cone_grid, __constant Cone *cone_set, const __global float4 *restrict cone_voxels, \
+      const __global uchar *restrict cone_cells
+#else
+#define VOXEL_ARGS LIT_ARGS
+#define VOXEL_PARAMS LIT_PARAMS
+#endif
+
 #ifdef HAS_SPECULAR
 /* And how their normals change over their discs: n(u, v) = n + u (f.x a + f.y b) + v (f.z a + f.w b), f = field_pool[i],
  * a and b the tangents of n (host/cloud/normal_field.h). */
-#define NORMAL_ARGS LIT_ARGS, field_pool
-#define NORMAL_PARAMS LIT_PARAMS, const __global float4 *restrict field_pool
+#define NORMAL_ARGS VOXEL_ARGS, field_pool
+#define NORMAL_PARAMS VOXEL_PARAMS, const __global float4 *restrict field_pool
 #else
-#define NORMAL_ARGS LIT_ARGS
-#define NORMAL_PARAMS LIT_PARAMS
+#define NORMAL_ARGS VOXEL_ARGS
+#define NORMAL_PARAMS VOXEL_PARAMS
 #endif
 
 #ifdef HAS_CAUSTICS

@@ -89,5 +89,19 @@ static inline float3 conductor_eval(const Surface* s, const __global Material* m
   return conductor_reflectance(material, dot3(towards, h)) *
          (density / ((at_v + ggx_lambda(to_light, alpha)) * 4.0f * to_viewer * to_light));
 }
+
+#ifdef HAS_CONES
+/* Normals of width alpha are spread as those of a Phong lobe of exponent 2 / alpha^2 - 2, and mirrored directions by twice
+ * their angle: as a lobe of a quarter of it. */
+static inline LobeCone conductor_cone(const Surface* s, const __global Material* material, float3 direction) {
+  const float3 n = facing_normal(s, direction);
+  const float alpha = material->alpha, cosine = -dot3(direction, n), masked = ggx_lambda(cosine, alpha);
+  LobeCone cone;
+  cone.direction = reflect3(direction, n);
+  cone.weight = conductor_reflectance(material, cosine) * ((1.0f + masked) / (1.0f + 2.0f * masked));
+  cone.spread = phong_spread(fmax(0.5f / (alpha * alpha) - 0.5f, 0.0f));
+  return cone;
+}
+#endif
 #endif
 #endif

@@ -61,6 +61,19 @@ static inline float3 eval_lobe(const Surface* s, const __global Material* materi
 }
 #endif
 
+#if defined(HAS_CONES) && defined(HAS_LOBES)
+/* The lobe of a surface as a cone. */
+static inline LobeCone lobe_cone(const Surface* s, const __global Material* material, float3 direction) {
+#define FOR_KIND_1(ID, name)           \
+  if (material->type == MATERIAL_##ID) \
+    return name##_cone(s, material, direction);
+  MATERIAL_KINDS(SAMPLE_KIND)
+#undef FOR_KIND_1
+  const LobeCone none = {s->normal, (float3)(0.0f), 0.0f};
+  return none;
+}
+#endif
+
 /* Probability that a path, or a photon, takes the specular part of a surface rather than the diffuse one: by their largest
  * reflectances. */
 static inline float specular_probability(const Surface* s, const __global Material* material) {

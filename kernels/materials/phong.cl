@@ -54,5 +54,16 @@ static inline float3 phong_eval(const Surface* s, const __global Material* mater
   *pdf = phong_density(cosine, material->exponent);
   return load3(material->specular) * phong_lobe(cosine, material->exponent);
 }
+
+#ifdef HAS_CONES
+static inline LobeCone phong_cone(const Surface* s, const __global Material* material, float3 direction) {
+  const float3 n = facing_normal(s, direction);
+  LobeCone cone;
+  cone.direction = reflect3(direction, n);
+  cone.weight = load3(material->specular) * phong_weight(dot3(cone.direction, n), material->exponent);
+  cone.spread = phong_spread(material->exponent);
+  return cone;
+}
+#endif
 #endif
 #endif

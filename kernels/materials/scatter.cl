@@ -22,11 +22,36 @@ static inline float3 facing_normal(const Surface* s, float3 direction) {
   return normalize3(n - fmax(LEAST_FACING + dot3(n, direction), 0.0f) * direction);
 }
 
+#ifdef HAS_CONES
+/* A lobe as the one cone that stands for it. */
+typedef struct LobeCone {
+  float3 direction; /* mirrored, unit */
+  float3 weight;    /* of the mean radiance in the cone, per colour */
+  float spread;     /* diameter over distance */
+} LobeCone;
+
+/* Spread of the cone about whose axis even light has the mean cosine of a Phong lobe of this exponent, 1 - 1 / (n + 2). Of
+ * flat lobes that of a half angle of 60 degrees. */
+static inline float phong_spread(float exponent) {
+  const float height = fmin(2.0f / (exponent + 2.0f), 0.5f); /* 1 - cosine of the half angle */
+  return 2.0f * sqrt(height * (2.0f - height)) / (1.0f - height);
+}
+
+#define NO_LOBE_CONE(name)                                                                                              \
+  static inline LobeCone name##_cone(const Surface* s, const __global Material* material, float3 direction) {          \
+    const LobeCone none = {s->normal, (float3)(0.0f), 0.0f};                                                            \
+    return none;                                                                                                        \
+  }
+#else
+#define NO_LOBE_CONE(name)
+#endif
+
 /* Kinds without a lobe: no sampled light is reflected to the viewer. */
 #define NO_LOBE(name)                                                                                                   \
   static inline float3 name##_eval(const Surface* s, const __global Material* material, float3 direction,              \
                                    float3 towards, float* pdf) {                                                        \
     *pdf = 0.0f;                                                                                                        \
     return (float3)(0.0f);                                                                                              \
-  }
+  }                                                                                                                   \
+  NO_LOBE_CONE(name)
 #endif

@@ -3,6 +3,7 @@
  *   NO_SHADOW_RAYS  H_direct is in the points' irradiance already */
 #include "lights/lights.cl"
 #include "render/camera.cl"
+#include "render/cones.cl"
 
 /* Uses of random numbers at a vertex, after those of kernels/lights/lights.cl (1 to 3, 7). */
 #define DIMENSION_BOUNCE 4u
@@ -153,7 +154,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
       radiance += load3(lights.materials[s.material].emission);
 #endif
 #ifdef HAS_RADIOSITY
-      diffuse = s.albedo * INVERSE_PI * s.irradiance;
+      diffuse = s.albedo * INVERSE_PI * irradiance_from_surfaces(POOL_ARGS, &s, id);
 #endif
     }
   } else {

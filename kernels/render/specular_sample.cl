@@ -42,6 +42,33 @@ static inline bool is_lit(const __global Material* material) {
   return has_flag(material, MATERIAL_REFLECTS_DIFFUSELY | MATERIAL_HAS_LOBE);
 }
 
+/* Whether one cone finds what the lobe reflects of other surfaces (kernels/render/cones.cl): no ray goes on. */
+static inline bool reflects_by_cone(const __global Material* material) {
+#if defined(HAS_CONES) && defined(HAS_LOBES)
+  return has_flag(material, MATERIAL_HAS_LOBE);
+#else
+  return false;
+#endif
+}
+
+/* Radiance that the surface reflects of others by its lobe. Where lamps and sky are sampled they are not in the voxels; where
+ * not, the lamps are, and the sky is what the cone leaves clear. */
+static inline float3 reflection_by_cone(POOL_PARAMS, Lights lights, const Surface* s, float3 direction) {
+#if defined(HAS_CONES) && defined(HAS_LOBES)
+  const LobeCone lobe = lobe_cone(s, lights.materials + s->material, direction);
+  const ConeVoxels from = {cone_voxels, cone_cells};
+  const float4 seen = trace_cone(from, cone_grid, cone_apex(cone_grid, s->position, s->normal), lobe.direction,
+                                 lobe.spread, CONE_LIFT, dot3(s->normal, lobe.direction));
+  float3 radiance = INVERSE_PI * seen.xyz;
+#ifndef HAS_LIGHT
+  radiance += (1.0f - seen.w) * far_light(lights, lobe.direction, only_choice());
+#endif
+  return lobe.weight * radiance;
+#else
+  return (float3)(0.0f);
+#endif
+}
+
 /* Takes what a bounce leaves of the light; false where the ray ends. */
 static inline bool throughput_after(SampleId id, uint bounces, float longest, float3 factor, float3* throughput) {
   const float survival = russian_roulette(id, bounces, longest, factor);
@@ -96,12 +123,15 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
       if (s.front && is_lit(material) && (bounces == 0u || bounces < most)) {
 #ifdef HAS_LIGHT
         direct = s.albedo * INVERSE_PI *
-                 direct_irradiance(POOL_ARGS, &s, lights, id, viewed_by(ray.direction, 1.0f), &sums[FILM_RAYS]);
+                 direct_irradiance(POOL_ARGS, &s, lights, id,
+                                   viewed_by(ray.direction, reflects_by_cone(material) ? 0.0f : 1.0f), &sums[FILM_RAYS]);
         specular = highlight_of(&s, material);
 #endif
+        if (reflects_by_cone(material))
+          specular += reflection_by_cone(POOL_ARGS, lights, &s, ray.direction);
         if (has_flag(material, MATERIAL_REFLECTS_DIFFUSELY)) {
 #ifdef HAS_RADIOSITY
-          diffuse = s.albedo * INVERSE_PI * s.irradiance;
+          diffuse = s.albedo * INVERSE_PI * irradiance_from_surfaces(POOL_ARGS, &s, id);
 #endif
           caustic = s.albedo * INVERSE_PI * caustic_irradiance_of(POOL_ARGS, &s);
         }
@@ -109,7 +139,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     }
     direct += seen_light(lights, met, &s, ray.direction, choice);
     add_seen(throughput * direct, throughput * diffuse, throughput * specular, throughput * caustic, bounces == 0u, sums);
-    if (met && bounces < most)
+    if (met && bounces < most && !reflects_by_cone(lights.materials + s.material))
       goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);
     /* No longest survival: what loses nothing goes on for MOST_EYE_BOUNCES. */
     if (!goes_on || !throughput_after(id, bounces, 1.0f, scatter.weight, &throughput))

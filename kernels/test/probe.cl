@@ -6,6 +6,7 @@
 #include "materials/media.cl"
 #include "materials/phong.cl"
 #include "lib/sampling.cl"
+#include "shared/cone_types.h"
 #include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
@@ -59,6 +60,12 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[42] = OFFSET(PhotonFlight, absorbed);
   sizes[43] = sizeof(GatherParams);
   sizes[44] = OFFSET(GatherParams, radius2);
+  sizes[45] = sizeof(ConeGrid);
+  sizes[46] = OFFSET(ConeGrid, side_log2);
+  sizes[47] = OFFSET(ConeGrid, first);
+  sizes[48] = sizeof(Cone);
+  sizes[49] = OFFSET(Cone, spread);
+  sizes[50] = sizeof(VoxelShare);
 }
 
 /* nodes[i] = the leaf or empty node that holds positions[i] (xyz), for i < count. */

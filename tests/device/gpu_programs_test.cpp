@@ -39,6 +39,7 @@ void make_picture(Session& session, Scene scene, const std::optional<LightPaths>
   if (!light.indirect.from_surfaces.empty()) {
     irradiance = upload_irradiance(session, light.indirect, scene);
     request.irradiance = &irradiance;
+    request.cones = light.indirect.at_pixels ? &*light.indirect.at_pixels : nullptr;
     request.shadow_rays = !direct_light_by_radiosity(scene);
   }
   request.normal_field = light.normal_field ? &*light.normal_field : nullptr;
@@ -62,7 +63,7 @@ TEST_CASE("every program that a GPU is asked for when the demo is rendered is ch
       load_scene(POINTGI_SOURCE_DIR "/scenes/demo/room.toml",
                  {"render.size=[8,8]", "render.spp=1", "caustics.photons=20000", "radiosity.epsilon=0.1"});
   make_picture(session, scene, std::nullopt);
-  Scene thesis = scene, bare = scene, direct = scene;
+  Scene thesis = scene, bare = scene, cones = scene;
   thesis.radiosity.direct_light = "radiosity";
   thesis.caustics.power = "equal";
   thesis.caustics.gather_k = 50;
@@ -70,6 +71,9 @@ TEST_CASE("every program that a GPU is asked for when the demo is rendered is ch
   bare.radiosity.method = "none";
   bare.caustics.photons = 0;
   make_picture(session, bare, std::nullopt);
+  cones.radiosity.method = "cones";
+  cones.radiosity.at = "pixels";
+  make_picture(session, cones, std::nullopt);
   make_picture(session, scene, light_paths("", scene.render.max_depth));
   make_picture(session, scene, light_paths("LDE", scene.render.max_depth));
   spdlog::set_level(level);
@@ -108,6 +112,7 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
         if (!f.specular() && (bit(6) || bit(7) || k > 0)) continue;
         if (!f.shadow_rays && !f.radiosity) continue;
         if (k > 0 && f.lights == 0 && !f.emitters && !f.environment && !f.radiosity) continue; // light brings photons
+        f.cone_texels = !f.radiosity ? 0u : k == 50u ? 6u : k == 400u ? 1u : 0u;
         const SceneFeatures given = features_on(gpu, f);
         TraversalVariant v = plain_variant(form);
         CAPTURE(bits, k);
@@ -123,6 +128,7 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
         if (f.specular()) CHECK((given.material_flags & f.material_flags) == f.material_flags);
         CHECK(given.sky_map == f.sky_map);
         CHECK(given.radiosity == f.radiosity);
+        CHECK(given.cone_texels == f.cone_texels);
         CHECK(given.shadow_rays == f.shadow_rays);
         CHECK(shade_program(v, features_on(cpu, f)).options == shade_program(v, f).options);
       }

@@ -1,5 +1,6 @@
 #include "host/passes/device_pools.h"
 #include "octree/ref/descend.h"
+#include "shared/cone_types.h"
 #include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
@@ -62,6 +63,12 @@ TEST_CASE("device and host lay the shared structs out alike") {
       offsetof(PhotonFlight, absorbed),
       sizeof(GatherParams),
       offsetof(GatherParams, radius2),
+      sizeof(ConeGrid),
+      offsetof(ConeGrid, side_log2),
+      offsetof(ConeGrid, first),
+      sizeof(Cone),
+      offsetof(Cone, spread),
+      sizeof(VoxelShare),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_layout");

@@ -103,6 +103,16 @@ TEST_CASE("kernels of a scene without specular surfaces know nothing of them") {
                                                           Contains("HAS_TRANSMISSION") && Contains("HAS_LOBES"));
 }
 
+TEST_CASE("pictures whose pixels trace no cones know nothing of voxels") {
+  const TraversalVariant v = plain_variant(TraversalForm::wide);
+  SceneFeatures features{all_lights, true, true, true};
+  CHECK_THAT(shade_program(v, features).options, !Contains("CONE"));
+  features.cone_texels = 6;
+  CHECK_THAT(shade_program(v, features).options, Contains("HAS_CONES") && Contains("CONE_SIDES=6"));
+  CHECK(cones_program("radiosity/cones/voxelise.cl").options.empty());
+  CHECK_THAT(cones_program("radiosity/cones/trace.cl", 1).options, Contains("CONE_SIDES=1"));
+}
+
 TEST_CASE("each program is listed once, with the devices that may run it") {
   std::set<std::string> seen;
   std::size_t cpu_only = 0;

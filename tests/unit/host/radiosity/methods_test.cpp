@@ -5,6 +5,7 @@
 #include "tests/support/run_program.h"
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <map>
 
 using namespace pointgi;
 using namespace pointgi::test;
