@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t shown_bytes = 60;
 constexpr std::size_t shown_elements = 4;
-constexpr std::size_t shown_names = 20;
+constexpr std::size_t shown_names = 32;
 
 std::string number_text(double value) {
   if (std::isnan(value)) return "nan";

@@ -180,6 +180,8 @@ std::vector<Way> usual_ways() {
       way("directions 512", "directions", [](RadiositySettings&) {}),
       way("directions 1024", "directions", [](RadiositySettings& s) { s.directions = 1024; }),
       way("hemicube 588", "directions", [](RadiositySettings& s) { s.directions = 588, s.direction_set = "hemicube"; }),
+      way("cones", "cones", [](RadiositySettings&) {}),
+      way("cones 6, isotropic", "cones", [](RadiositySettings& s) { s.cones = 6, s.anisotropic = false; }),
       way("gather static 128", "gather", [](RadiositySettings& s) { s.sampling = "static"; }),
       way("gather monte_carlo 128", "gather", [](RadiositySettings& s) { s.sampling = "monte_carlo"; }),
       way("gather mipmap 128", "gather", [](RadiositySettings& s) { s.sampling = "mipmap"; }),

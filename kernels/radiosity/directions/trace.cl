@@ -54,8 +54,8 @@ __kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint fi
     traced += 1.0f;
     Hit hit = visible_hit(POOL_ARGS, ray, ends, trace_closest_from(POOL_ARGS, ray, ends), &traced);
     if (hit.splat != NO_SPLAT) {
-      hit.splat = facing_side(POOL_ARGS, hit.splat, ray.direction);
-      if (is_back(pool_point_texel(POINT_TEXELS * hit.splat + 1u).xyz, ray.direction))
+      hit.splat = facing_side(POOL_ARGS, ray, hit);
+      if (is_back(normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat).xyz, ray.direction))
         hit.splat = NO_SPLAT;
     }
     hits[HIT_AT(i - held_from, k, count)] = hit.splat;

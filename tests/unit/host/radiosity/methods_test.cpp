@@ -36,7 +36,7 @@ TEST_CASE("the loader takes every method and every key that a method reads, and 
     for (const std::string key : row.keys) {
       CAPTURE(row.method, key);
       // One of these is a value of any key; a word is named where 5 is refused.
-      std::vector<std::string> values{"0.125", "true", "64", "5"};
+      std::vector<std::string> values{"0.125", "true", "64", "9", "5"};
       try {
         load_scene(scene, {"radiosity." + key + "=5"});
       } catch (const Error& error) {
