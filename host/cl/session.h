@@ -132,10 +132,9 @@ public:
   std::size_t programs_compiled() const { return compiled_; }
   std::size_t programs_from_cache() const { return from_cache_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
-  /// What the device may still have for what is kept on it: what was held at most is what is held now, or a little
-  /// more. Half of it where its memory is the host's.
+  /// What the device may still have for what is kept on it. Half of it where its memory is the host's.
   std::uint64_t bytes_left() const {
-    const std::uint64_t left = info_.memory_bytes - std::min(info_.memory_bytes, bytes_->peak);
+    const std::uint64_t left = info_.memory_bytes - std::min<std::uint64_t>(info_.memory_bytes, bytes_->now);
     return info_.is_cpu ? left / 2 : left;
   }
 

@@ -121,6 +121,7 @@ void set_back(const Splat& front, const PatchBend& of_front, Splat& back, PatchB
     back.position[a] = front.position[a];
     back.normal[a] = -front.normal[a];
   }
+  back.radius = front.radius;
   of_back = {-of_front.xx, of_front.xy, -of_front.yy, 0.0f};
 }
 

@@ -38,9 +38,7 @@ void DeviceDirect::make_bands(const DirectOptions& options) {
   if (wanted > available)
     throw Error(ErrorKind::memory, info.name + ": the visibility of all pairs of " + std::to_string(points_.size()) +
                                        " points takes a bit a pair, " + megabytes(wanted) + ", and the device has " +
-                                       megabytes(available) +
-                                       " left; use radiosity.method = \"directions\" or \"fmm\", a coarser spacing, or "
-                                       "another --device");
+                                       megabytes(available) + " left; " + options.remedy);
   const std::uint64_t piece = options.allocation_bytes != 0 ? options.allocation_bytes : info.max_allocation_bytes;
   const auto rows = static_cast<cl_uint>(std::clamp<std::uint64_t>(piece / row_bytes, 1, tiles_));
   for (cl_uint first = 0; first < tiles_; first += rows)

@@ -16,6 +16,8 @@ struct DirectOptions {
   float step_delta = 0.0f;            ///< root cube units, of the absolute-delta variant only
   std::uint64_t memory_bytes = 0;     ///< what all bits may take; 0: what the device has left
   std::uint64_t allocation_bytes = 0; ///< what one piece of them may take; 0: what the device gives in one
+  /// Where they do not fit.
+  std::string remedy = "use radiosity.method = \"directions\" or \"fmm\", a coarser spacing, or another --device";
   bool keep = true; ///< the bits; else each apply traces all pairs anew, in as much memory as a few rows take
   const Occupancy* occupancy = nullptr;       ///< visibility by marching through it; null: by rays
   std::function<void(double share)> progress; ///< of the rays, [0, 1], after every launch; may be empty

@@ -10,6 +10,7 @@ namespace {
 constexpr double first_traced = 256, first_received = 65536;
 
 constexpr std::size_t receive_group = 64;
+constexpr std::size_t most_rays = 1u << 30; ///< of the smallest launch: their count has 32 bits
 
 std::uint64_t in_whole_blocks(std::uint64_t points) {
   return points / FMM_LANES * FMM_LANES;
@@ -22,7 +23,9 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
                                    const DirectionsOptions& options)
     : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
       pool_points_(pool_points), group_(variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
-      places_(places.begin(), places.end()), trace_pace_(first_traced, busy_work_items(session.info())),
+      places_(places.begin(), places.end()),
+      trace_pace_(first_traced,
+                  std::min<std::size_t>(busy_work_items(session.info()), most_rays / set_.weights.size() + 1)),
       receive_pace_(first_received, busy_work_items(session.info())) {
   if (places_.empty()) return;
   const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
@@ -39,7 +42,10 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
 void DeviceDirections::keep_bands(const DirectionsOptions& options) {
   const std::uint64_t a_point = sizeof(cl_uint) * set_.weights.size(), points = places_.size();
   const std::uint64_t piece = session_.info().max_allocation_bytes;
-  const std::uint64_t available = options.memory_bytes != 0 ? options.memory_bytes : session_.bytes_left();
+  // A quarter is left to the stages that follow, and room for what an apply sends and receives.
+  const std::uint64_t left = session_.bytes_left() / 4 * 3, an_apply = 2 * sizeof(cl_float4) * pool_points_;
+  const std::uint64_t available =
+      options.memory_bytes != 0 ? options.memory_bytes : std::max<std::uint64_t>(1, left - std::min(left, an_apply));
   const std::uint64_t largest = std::max<std::uint64_t>(FMM_LANES, in_whole_blocks(piece / a_point));
   // A band that is not kept needs its room, too.
   at_once_ = static_cast<cl_uint>(std::clamp<std::uint64_t>(in_whole_blocks(available / 8 / a_point), FMM_LANES,

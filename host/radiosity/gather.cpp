@@ -52,6 +52,7 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
     all.occupancy = options.occupancy;
     all.step_delta = options.step_delta;
     all.memory_bytes = options.memory_bytes;
+    all.remedy = "set radiosity.visibility_cache = false, or radiosity.sampling = \"mipmap\"";
     all.progress = options.progress;
     pairs_ = std::make_unique<DeviceDirect>(session, pools, variant, tree.points, all);
     return;
@@ -70,8 +71,8 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
   receive_ = session.kernel(summing.file, summing.options, picked ? "receive_from_picked" : "receive_from_all");
   if (options.sampling == GatherSampling::adaptive) {
     const std::vector<double> even(3 * points_.size(), 1.0);
-    cut_ = refined_cut(tree, {0}, even, most_senders(tree, options) / first_share);
-    windows_ = windows_of_cut(tree, cut_);
+    first_cut_ = refined_cut(tree, {0}, even, most_senders(tree, options) / first_share);
+    take_cut(first_cut_);
   } else
     windows_ = sender_windows(tree, options.sampling == GatherSampling::all ? 1 : options.window);
   if (picked) {
@@ -81,7 +82,7 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
     make_bands();
   } else if (options.sampling == GatherSampling::all)
     take_senders({{}, tree.points, points_});
-  else
+  else if (options.sampling != GatherSampling::adaptive)
     take_senders(options.sampling == GatherSampling::fixed ? middle_senders(tree, windows_)
                                                            : mean_senders(tree, windows_));
 }
@@ -93,6 +94,12 @@ void DeviceGather::take_senders(Senders&& senders) {
   seen_ = session_.upload(senders_.seen);
   sender_planes_ = session_.upload(point_planes(senders_.sends, sender_stride_));
   make_bands();
+}
+
+void DeviceGather::take_cut(const ClusterCut& cut) {
+  cut_ = cut;
+  windows_ = windows_of_cut(tree_, cut_);
+  take_senders(mean_senders(tree_, windows_));
 }
 
 void DeviceGather::make_bands() {
@@ -122,26 +129,27 @@ void DeviceGather::make_bands() {
 void DeviceGather::trace(Band& band, unsigned pass) {
   const std::vector<cl::Memory> sight =
       occupancy_ ? occupancy_->arguments() : std::vector<cl::Memory>{pools_.nodes, pools_.leaves, pools_.points};
-  const auto told = [&](double share) {
+  const auto report = [&](double share) {
     if (options_.progress)
       options_.progress((band.first + share * (band.end - band.first)) / static_cast<double>(rows_));
   };
-  for_each_batch(EqualItems{band.end - band.first}, trace_pace_, {{}, told}, [&](std::size_t first, std::size_t count) {
-    const LaunchShape shape =
-        LaunchShape::grid((sender_count_ + senders_at_once - 1) / senders_at_once, count, group_, 1);
-    const cl_uint row = band.first + static_cast<cl_uint>(first);
-    const auto points = static_cast<cl_uint>(points_.size());
-    session_.fill(ray_count_, cl_uint{0}, 1);
-    const double seconds =
-        is_monte_carlo(options_)
-            ? session_.launch(trace_, shape, sight, table_, points, device_windows_, members_, pass, options_.seed,
-                              sender_count_, row, static_cast<cl_uint>(count), band.seen, band.first, ray_count_,
-                              options_.step_delta)
-            : session_.launch(trace_, shape, sight, table_, points, seen_, sender_count_, row,
-                              static_cast<cl_uint>(count), band.seen, band.first, ray_count_, options_.step_delta);
-    rays_ += session_.download(ray_count_, 1)[0];
-    return seconds;
-  });
+  for_each_batch(
+      EqualItems{band.end - band.first}, trace_pace_, {{}, report}, [&](std::size_t first, std::size_t count) {
+        const LaunchShape shape =
+            LaunchShape::grid((sender_count_ + senders_at_once - 1) / senders_at_once, count, group_, 1);
+        const cl_uint row = band.first + static_cast<cl_uint>(first);
+        const auto points = static_cast<cl_uint>(points_.size());
+        session_.fill(ray_count_, cl_uint{0}, 1);
+        const double seconds =
+            is_monte_carlo(options_)
+                ? session_.launch(trace_, shape, sight, table_, points, device_windows_, members_, pass, options_.seed,
+                                  sender_count_, row, static_cast<cl_uint>(count), band.seen, band.first, ray_count_,
+                                  options_.step_delta)
+                : session_.launch(trace_, shape, sight, table_, points, seen_, sender_count_, row,
+                                  static_cast<cl_uint>(count), band.seen, band.first, ray_count_, options_.step_delta);
+        rays_ += session_.download(ray_count_, 1)[0];
+        return seconds;
+      });
   band.traced = true;
 }
 
@@ -167,10 +175,11 @@ void DeviceGather::gather(View<double> radiosity, unsigned pass, std::vector<dou
     pairs_->apply(radiosity, LinearisationPoint::current, irradiance);
     return;
   }
-  if (options_.sampling == GatherSampling::adaptive && pass > 0 && !is_refined()) {
-    cut_ = refined_cut(tree_, cut_, radiosity, std::min(most_senders(tree_, options_), 2 * cut_.size()));
-    windows_ = windows_of_cut(tree_, cut_);
-    take_senders(mean_senders(tree_, windows_));
+  if (options_.sampling == GatherSampling::adaptive) {
+    if (pass == 0)
+      take_cut(first_cut_);
+    else if (!is_refined())
+      take_cut(refined_cut(tree_, cut_, radiosity, std::min(most_senders(tree_, options_), 2 * cut_.size())));
   }
   const bool own = is_monte_carlo(options_) || options_.sampling == GatherSampling::all;
   const std::vector<double> sent = own ? std::vector<double>(radiosity.begin(), radiosity.end())

@@ -56,6 +56,7 @@ private:
   };
 
   void take_senders(Senders&& senders);
+  void take_cut(const ClusterCut& cut);
   void make_bands();
   void trace(Band& band, unsigned pass);
   void receive(const Band& band, unsigned pass, const Buffer<cl_float>& flux);
@@ -67,7 +68,7 @@ private:
   std::optional<Occupancy> occupancy_;
   std::unique_ptr<DeviceDirect> pairs_; ///< of `all` with reciprocity, which it does alone
   SenderWindows windows_;
-  ClusterCut cut_;  ///< adaptive
+  ClusterCut first_cut_, cut_; ///< adaptive: of the first pass, and of this one
   Senders senders_; ///< not of monte_carlo
   std::vector<ExchangePoint> points_;
   cl_uint rows_ = 0, stride_ = 0, sender_stride_ = 0, sender_count_ = 0;

@@ -49,7 +49,8 @@ public:
                megabytes(all && options.reciprocity
                              ? direct_bytes(tree_.points.size())
                              : gather_cache_bytes(tree_.points.size(),
-                                                  all ? tree_.points.size() : tree_.points.size() / options.window)));
+                                                  all ? tree_.points.size()
+                                                      : sender_windows(tree_, options.window).windows.size())));
     gather_ = std::make_unique<DeviceGather>(session, scene.pools, scene.variant, tree_, options);
     refines_ = options.sampling == GatherSampling::adaptive;
   }

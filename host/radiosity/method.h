@@ -53,7 +53,7 @@ public:
   /// irradiance, and where nothing exchanges light. Nothing may be solved for after that.
   virtual std::optional<DeviceCones> cones_of(View<float>) { return std::nullopt; }
 
-  /// Rays that decided who sees whom, now or in an earlier run. Solving traces none.
+  /// Rays that decided who sees whom until now, or in an earlier run. Solving traces only what a method does not keep.
   virtual std::uint64_t rays() const = 0;
   /// What it works with, for the log: "12345 links".
   virtual std::string summary() const = 0;

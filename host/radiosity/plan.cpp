@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace pointgi {
 
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+
+/// Looks at two points that a look at two clusters is worth, and those that the bound of a scene may take a point: a
+/// ball takes 60, and what is nearly flat but noisy would take all pairs.
+constexpr std::uint64_t work_of_clusters = 8, work_a_point = 300;
 
 std::string millions(double rays) {
   char text[40];
@@ -32,9 +37,12 @@ public:
 
   double sent() const { return flux_.empty() ? 0.0 : flux_[0]; }
 
-  double received(double enough) {
+  /// Infinity where it cannot be told in about `most_work` looks at two points.
+  double received(double enough, std::uint64_t most_work) {
     std::vector<std::array<std::uint32_t, 2>> waiting{{0, 0}};
     while (!waiting.empty() && received_ <= enough) {
+      work_ += work_of_clusters;
+      if (work_ > most_work) return std::numeric_limits<double>::infinity();
       const auto [ka, kb] = waiting.back();
       waiting.pop_back();
       take(ka, kb, waiting);
@@ -76,9 +84,11 @@ private:
   }
 
   void take_points(const Cluster& a, const Cluster& b, bool same) {
+    work_ += std::uint64_t{a.count} * b.count;
     for (std::uint32_t i = a.first_point; i < a.first_point + a.count; ++i)
       for (std::uint32_t j = same ? i + 1 : b.first_point; j < b.first_point + b.count; ++j) {
         const ExchangePoint p(tree_.points[i]), q(tree_.points[j]);
+        if (!(p.area > 0.0) || !(q.area > 0.0)) continue;
         received_ += point_flux_[j] / q.area * point_exchange(p, q) * p.area +
                      point_flux_[i] / p.area * point_exchange(q, p) * q.area;
       }
@@ -87,6 +97,7 @@ private:
   const ClusterTree& tree_;
   std::vector<double> flux_, point_flux_; ///< of all colours together
   double received_ = 0.0;
+  std::uint64_t work_ = 0;
 };
 
 } // namespace
@@ -97,15 +108,18 @@ double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double
   if (!(bound.sent() > 0.0)) return 0.0;
   // Of what is received once a part is sent again: at most the albedo of it, and so on.
   const double again = albedo / std::max(1e-3, 1.0 - albedo);
-  return bound.received(enough * bound.sent() / again) * again / bound.sent();
+  return bound.received(enough * bound.sent() / again, work_a_point * (tree.points.size() + 1000)) * again /
+         bound.sent();
 }
 
 MethodPlan plan_method(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                        const RadiosityMap& clusters, bool emitters_exchange) {
   MethodPlan plan{radiosity_method("fmm"), {}, estimate_visibility(session, scene, settings, clusters)};
   const double directions = static_cast<double>(clusters.place.size()) * settings.directions;
+  char factor[80];
+  std::snprintf(factor, sizeof factor, "; directions are taken above %g times theirs", dearer_factor);
   const std::string asks = "the V-map would ask about " + millions(plan.vmap.rays) + " rays, " +
-                           std::to_string(settings.directions) + " directions a point " + millions(directions);
+                           std::to_string(settings.directions) + " directions a point " + millions(directions) + factor;
   if (plan.vmap.rays <= dearer_factor * directions) {
     plan.reason = asks;
   } else if (emitters_exchange) {

@@ -11,9 +11,9 @@ struct MethodPlan {
 };
 
 /// "directions" is taken where the V-map would ask more than this share of its rays: a ray of the V-map, with what its
-/// traversal and the fast multipole method take, costs about two of directions. bench_methods measures both
+/// traversal and the fast multipole method take, costs one and a half of directions. bench_methods measures both
 /// (docs/method/methods.md).
-constexpr double dearer_factor = 0.5;
+constexpr double dearer_factor = 0.7;
 
 /// Compares what the V-map would ask, from a sample of its questions, with points x settings.directions. Depends on the
 /// scene and the settings alone, not on how fast a device is or what is kept from earlier runs. `emitters_exchange`:
@@ -23,7 +23,8 @@ MethodPlan plan_method(Session& session, const ExchangeScene& scene, const Radio
 
 /// Upper bound of the light that surfaces send each other, as a share of `power`, what they reflect of the direct light
 /// [W/m², points x 3 in the tree's order, radiosity], where nothing stood between any two. `albedo`: the largest of all
-/// points. Stops where the bound passes `enough`, and returns what it found until then.
+/// points. Stops where the bound passes `enough`, and returns what it found until then; infinity where it cannot be
+/// told in time that grows as the points.
 double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double albedo, double enough);
 
 } // namespace pointgi

@@ -31,10 +31,15 @@ namespace {
 /// Passes questions on and reports how many were answered, and how long those take that are still expected.
 class ReportedVisibility : public VisibilityOracle {
 public:
-  ReportedVisibility(VisibilityOracle& oracle, double expected, const WorkReport& report)
-      : oracle_(oracle), expected_(expected), report_(report), begin_(std::chrono::steady_clock::now()) {}
+  /// expected: how many rays there will be, asked before the first.
+  ReportedVisibility(VisibilityOracle& oracle, std::function<double()> expected, const WorkReport& report)
+      : oracle_(oracle), ask_expected_(std::move(expected)), report_(report) {}
 
   std::vector<std::uint8_t> blocked(View<Segment> segments) override {
+    if (rays_ == 0.0) {
+      expected_ = ask_expected_();
+      begin_ = std::chrono::steady_clock::now();
+    }
     auto answers = oracle_.blocked(segments);
     rays_ += static_cast<double>(segments.size);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
@@ -50,7 +55,8 @@ public:
 
 private:
   VisibilityOracle& oracle_;
-  double expected_;
+  std::function<double()> ask_expected_;
+  double expected_ = 0.0;
   const WorkReport& report_;
   std::chrono::steady_clock::time_point begin_;
   double rays_ = 0.0;
@@ -107,14 +113,20 @@ LinkEstimate estimate_visibility(Session& session, const ExchangeScene& scene, c
 }
 
 RadiosityMap find_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
-                             RadiosityMap map, const LinkEstimate& expected, const WorkReport& report) {
+                             RadiosityMap map, std::optional<LinkEstimate> expected, const WorkReport& report) {
   if (map.place.empty()) return map;
   const TraversalVariant& variant = scene.variant;
   DeviceVisibility oracle(session, scene.pools, variant, map.tree.points, step_delta_of(scene));
   const LinkOptions options = link_options(scene, settings, map.place.size());
   const DeviceInfo& device = session.info();
-  const double most = options.most_rays > 0 ? static_cast<double>(options.most_rays) : expected.rays;
-  ReportedVisibility reported(oracle, std::min(expected.rays, most), report);
+  ReportedVisibility reported(
+      oracle,
+      [&] {
+        if (!expected) expected = estimate_links(map.tree, oracle, options, scene.points);
+        return options.most_rays > 0 ? std::min(expected->rays, static_cast<double>(options.most_rays))
+                                     : expected->rays;
+      },
+      report);
   char more[80];
   std::snprintf(more, sizeof more, ", delta %a, kernels %016llx",
                 variant.stepping == Stepping::absolute_delta ? variant.step_delta / scene.side : 0.0,

@@ -44,9 +44,10 @@ LinkEstimate estimate_visibility(Session& session, const ExchangeScene& scene, c
                                  const RadiosityMap& clusters);
 
 /// Asks the device for the visibility of the clusters; where no splat exchanges light, asks nothing. `expected`: what
-/// it will ask, by which `report` is told how long it will take. Throws Error(device), Error(memory).
+/// it will ask, by which `report` is told how long it will take; absent: estimated where no map is kept. Throws
+/// Error(device), Error(memory).
 RadiosityMap find_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
-                             RadiosityMap clusters, const LinkEstimate& expected, const WorkReport& report);
+                             RadiosityMap clusters, std::optional<LinkEstimate> expected, const WorkReport& report);
 
 /// All of it.
 RadiosityMap map_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,

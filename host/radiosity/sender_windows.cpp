@@ -140,7 +140,10 @@ Senders mean_senders(const ClusterTree& tree, const SenderWindows& windows) {
       mean.x += p.area * p.x;
       mean.n += p.area * p.n;
     }
-    mean.x /= mean.area;
+    if (mean.area > 0.0)
+      mean.x /= mean.area;
+    else
+      mean = ExchangePoint(tree.points[windows.members[w.first]]); // sends nothing
     mean.n.normalize(); // all face one axis more than any other: the sum is not 0
     const auto distance = [&](std::uint32_t k) {
       return (ExchangePoint(tree.points[windows.members[k]]).x - mean.x).squaredNorm();
@@ -185,7 +188,7 @@ std::vector<double> mean_radiosity(const ClusterTree& tree, const SenderWindows&
         flux[c] += radiosity[3 * i + c] * double{tree.points[i].area};
     }
     for (const double f : flux)
-      of_windows.push_back(f / area);
+      of_windows.push_back(area > 0.0 ? f / area : 0.0);
   }
   return of_windows;
 }

@@ -128,6 +128,21 @@ void load_gather(const TableReader& table, RadiositySettings& radiosity) {
                                        "\"all\", \"static\" or \"mipmap\"");
 }
 
+/// The method that alone reads some of the section's keys; empty: none does.
+std::string method_of_keys(const TableReader& table) {
+  std::string method, by;
+  for (const RadiosityWords& row : radiosity_words())
+    for (const char* key : row.keys) {
+      if (!table.has(key) || !is_of_one_method(key)) continue;
+      if (!method.empty() && method != row.method)
+        table.fail(key, std::string("method \"") + row.method + "\" reads this key, and \"" + method + "\" reads " +
+                            by + "; say which one with method = \"" + row.method + "\" or \"" + method + "\"");
+      method = row.method;
+      by = key;
+    }
+  return method;
+}
+
 } // namespace
 
 void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
@@ -138,7 +153,10 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   keys.insert(keys.end(), {"direct_light", "least_share", "light_samples"});
   table->allow_only(keys);
   radiosity.place = table->place();
-  if (const auto method = table->choice("method", radiosity_method_words())) radiosity.method = *method;
+  if (const auto method = table->choice("method", radiosity_method_words()))
+    radiosity.method = *method;
+  else if (const std::string implied = method_of_keys(*table); !implied.empty())
+    radiosity.method = implied;
   if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
   if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))
     radiosity.vmap_samples = static_cast<int>(*samples);

@@ -24,6 +24,13 @@ std::vector<std::string> radiosity_method_words() {
   return words;
 }
 
+bool is_of_one_method(const std::string& key) {
+  std::size_t methods = 0;
+  for (const RadiosityWords& row : radiosity_words())
+    methods += static_cast<std::size_t>(std::count(row.keys.begin(), row.keys.end(), key));
+  return methods == 1;
+}
+
 std::vector<std::string> radiosity_method_keys() {
   std::vector<std::string> keys;
   for (const RadiosityWords& row : radiosity_words())

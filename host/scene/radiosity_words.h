@@ -17,6 +17,9 @@ const std::vector<RadiosityWords>& radiosity_words();
 /// What `radiosity.method` may be, the default first.
 std::vector<std::string> radiosity_method_words();
 
+/// Whether one method alone reads this key.
+bool is_of_one_method(const std::string& key);
+
 /// Every key that some method reads, once.
 std::vector<std::string> radiosity_method_keys();
 

@@ -151,14 +151,11 @@ std::string reason_against_radiosity(const IndirectRequest& request) {
 namespace {
 
 RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
-                      std::optional<RadiosityMap> clusters, LinkEstimate expected, StageLog& stages) {
+                      std::optional<RadiosityMap> clusters, std::optional<LinkEstimate> expected, StageLog& stages) {
   stages.start("vmap");
   StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
-  if (!clusters) {
-    clusters = cluster_points(session, exchange, settings);
-    expected = estimate_visibility(session, exchange, settings, *clusters);
-  }
+  if (!clusters) clusters = cluster_points(session, exchange, settings);
   RadiosityMap map = find_visibility(session, exchange, settings, std::move(*clusters), expected, watch.report());
   if (map.kept) log_info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
@@ -298,7 +295,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
   const ExchangeScene exchange = exchange_scene(pools, request, exchanging);
   std::optional<RadiosityMap> clusters, map;
-  LinkEstimate expected;
+  std::optional<LinkEstimate> expected;
   std::string without_vmap;
   if (settings.method == "auto") {
     const MethodPlan plan = run_plan(session, exchange, request, clusters, light, stages);

@@ -243,9 +243,9 @@ std::vector<ProgramUse> all_programs() {
     add(segments_program(v), cpu, gpu);
     add(pairs_program(v), cpu, gpu);
     for (const bool monte_carlo : {false, true})
-      if (usual_walk) add(senders_program(v, 0, monte_carlo), cpu, gpu);
+      add(senders_program(v, 0, monte_carlo), cpu, gpu);
     for (const bool hemicube : {false, true})
-      if (!hemicube || usual_walk) add(directions_program(v, hemicube), cpu, gpu);
+      add(directions_program(v, hemicube), cpu, gpu);
     add(path_program(v, traced, true), cpu, gpu);
     add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);

@@ -54,16 +54,17 @@ static inline float area_in_voxel(const Polygon* whole, const float* centre, con
   return one.corners < 3u ? 0.0f : polygon_area(&one);
 }
 
-static inline uint add_share(const int* voxel, uint side_log2, float area, __global VoxelShare* shares, uint count) {
-  if (shares) {
+static inline uint add_share(const int* voxel, uint side_log2, float area, __global VoxelShare* shares, uint most, uint count) {
+  if (shares != 0 && count < most) {
     shares[count].voxel = (((uint)voxel[2] << side_log2 | (uint)voxel[1]) << side_log2) | (uint)voxel[0];
     shares[count].area = area;
   }
   return count + 1u;
 }
 
-/* The number of voxels that the splat overlaps; writes their shares unless `shares` is 0. */
-static inline uint shares_of_splat(const __global OctreePoint* point, __constant ConeGrid* grid, __global VoxelShare* shares) {
+/* The number of voxels that the splat overlaps; writes their shares, at most `most`, unless `shares` is 0. */
+static inline uint shares_of_splat(const __global OctreePoint* point, __constant ConeGrid* grid, __global VoxelShare* shares,
+                                   uint most) {
   const int last = (1 << grid->side_log2) - 1;
   const float scale = 1.0f / grid->voxel, area = point->area * scale * scale;
   float centre[3], normal[3];
@@ -85,7 +86,7 @@ static inline uint shares_of_splat(const __global OctreePoint* point, __constant
     }
   }
   if (low[0] == high[0] && low[1] == high[1] && low[2] == high[2])
-    return add_share(low, grid->side_log2, area, shares, 0u);
+    return add_share(low, grid->side_log2, area, shares, most, 0u);
   /* Columns of voxels along the axis that the disc lies most across: it meets few of each. */
   const float3 n = fabs(load3(point->normal));
   const int w = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2, p = (w + 1) % 3, q = (w + 2) % 3;
@@ -100,7 +101,7 @@ static inline uint shares_of_splat(const __global OctreePoint* point, __constant
       for (voxel[w] = begin; voxel[w] <= end; ++voxel[w]) {
         const float part = area_in_voxel(&disc, centre, voxel);
         if (part > 0.0f)
-          count = add_share(voxel, grid->side_log2, area * (part / whole), shares, count);
+          count = add_share(voxel, grid->side_log2, area * (part / whole), shares, most, count);
       }
     }
   return count;
@@ -111,13 +112,20 @@ __kernel void count_shares(const __global OctreePoint* points, uint first, uint 
                            __global uint* counts) {
   const uint i = first + get_global_id(0);
   if (i < end)
-    counts[i] = shares_of_splat(points + i, grid, 0);
+    counts[i] = shares_of_splat(points + i, grid, 0, 0u);
 }
 
-/* shares[begin[i] - begin[first]] and following: of splat i. */
+/* shares[begin[i] - begin[first]] and following, up to those of i + 1: of splat i. Two programs may round a sliver apart:
+ * what count_shares saw and this does not is a share of nothing. */
 __kernel void write_shares(const __global OctreePoint* points, uint first, uint end, __constant ConeGrid* grid,
                            const __global uint* begin, __global VoxelShare* shares) {
   const uint i = first + get_global_id(0);
-  if (i < end)
-    shares_of_splat(points + i, grid, shares + (begin[i] - begin[first]));
+  if (i >= end)
+    return;
+  const uint most = begin[i + 1u] - begin[i];
+  __global VoxelShare* of_splat = shares + (begin[i] - begin[first]);
+  for (uint k = shares_of_splat(points + i, grid, of_splat, most); k < most; ++k) {
+    of_splat[k].voxel = 0u;
+    of_splat[k].area = 0.0f;
+  }
 }

@@ -25,9 +25,9 @@ static inline float3 direction_in_cell(float3 normal, float4 cell, uint point, u
 /* Hits are kept in blocks of FMM_LANES points: word FMM_LANES (block * count + k) + lane is that of direction k. */
 #define HIT_AT(i, k, count) (FMM_LANES * ((ulong)((i) / FMM_LANES) * (count) + (k)) + (i) % FMM_LANES)
 
-/* hits[HIT_AT(i - first, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or NO_SPLAT:
+/* hits[HIT_AT(i - held_from, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or NO_SPLAT:
  * nothing, or the back of something, which is black.
- * NDRange: 1-D, padded, a work-item a point i, first <= i < end; `first` a multiple of FMM_LANES.
+ * NDRange: 1-D, padded, a work-item a point i, first <= i < end.
  *   directions  `count` cells (direction_in_cell)
  *   rays        grows by the number of rays traced */
 __kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,

@@ -4,6 +4,8 @@
 #include "tests/support/exchange.h"
 #include "tests/support/rooms.h"
 #include <catch2/catch.hpp>
+#include <limits>
+#include <random>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -32,11 +34,22 @@ private:
 } // namespace
 
 TEST_CASE("the bound of light between surfaces: nothing of a ball, all of a room, what two sheets send each other") {
-  CHECK(bound(sphere_splats(3000, 0.3f), 0.5) < 1e-5); // rounding of its discs' normals
+  for (const std::size_t points : {3000u, 30000u})
+    CHECK(bound(sphere_splats(points, 0.3f), 0.5) < 1e-5); // rounding of its discs' normals
   // A room: all that leaves arrives, half is sent again, half of it: 0.5 + 0.25 + ... = 1. The bound is above it.
   const double room = bound(inside_cube(20), 0.5);
   CHECK(room > 0.99);
-  CHECK(room < 6.0); // bounds by the nearest distance of clusters
+  // A plane whose normals are noisy: all pairs of its clusters may face each other, and it is not told in time.
+  std::vector<Splat> plane;
+  add_quad(plane, 150, {0.1, 0.1, 0.5}, {0.8, 0.0, 0.0}, {0.0, 0.8, 0.0}, {0.0, 0.0, 1.0}, 0.64);
+  std::mt19937 g(1);
+  std::normal_distribution<float> noise(0.0f, 0.02f);
+  for (Splat& s : plane) {
+    s.normal[0] = noise(g);
+    s.normal[1] = noise(g);
+    s.normal[2] = std::sqrt(1.0f - s.normal[0] * s.normal[0] - s.normal[1] * s.normal[1]);
+  }
+  CHECK(bound(plane, 0.5) == std::numeric_limits<double>::infinity());
   // Unit squares 1 apart: form factor 0.199825 (truths.md), and 0.5 + 0.25 + ... = 1 times it at most.
   std::vector<Splat> sheets;
   add_quad(sheets, 30, {0.1, 0.1, 0.2}, {0.5, 0.0, 0.0}, {0.0, 0.5, 0.0}, {0.0, 0.0, 1.0}, 0.25);
