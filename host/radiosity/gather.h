@@ -69,7 +69,7 @@ private:
   std::unique_ptr<DeviceDirect> pairs_; ///< of `all` with reciprocity, which it does alone
   SenderWindows windows_;
   ClusterCut first_cut_, cut_; ///< adaptive: of the first pass, and of this one
-  Senders senders_; ///< not of monte_carlo
+  Senders senders_;            ///< not of monte_carlo
   std::vector<ExchangePoint> points_;
   cl_uint rows_ = 0, stride_ = 0, sender_stride_ = 0, sender_count_ = 0;
   std::size_t group_;

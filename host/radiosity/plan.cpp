@@ -12,9 +12,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Looks at two points that a look at two clusters is worth, and those that the bound of a scene may take a point: a
-/// ball takes 60, and what is nearly flat but noisy would take all pairs.
-constexpr std::uint64_t work_of_clusters = 8, work_a_point = 300;
+/// Looks at two points that a look at two clusters is worth; those that the bound of a scene may take a point, and in
+/// all: a ball takes some 800 a point, and what is nearly flat but noisy would take all pairs. 3e8 take about 3 s.
+constexpr std::uint64_t work_of_clusters = 8, work_a_point = 1500, work_at_most = 300'000'000;
 
 std::string millions(double rays) {
   char text[40];
@@ -108,8 +108,9 @@ double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double
   if (!(bound.sent() > 0.0)) return 0.0;
   // Of what is received once a part is sent again: at most the albedo of it, and so on.
   const double again = albedo / std::max(1e-3, 1.0 - albedo);
-  return bound.received(enough * bound.sent() / again, work_a_point * (tree.points.size() + 1000)) * again /
-         bound.sent();
+  return bound.received(enough * bound.sent() / again,
+                        std::min<std::uint64_t>(work_at_most, work_a_point * tree.points.size())) *
+         again / bound.sent();
 }
 
 MethodPlan plan_method(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
