@@ -1,10 +1,10 @@
 /// Every radiosity method and its knobs on the same scenes: seconds, rays, bytes, and how far the radiosity is from
 /// that of the solver of every pair, or where all pairs are too many from that of very many directions. bench_methods
 /// --help
+#include "host/api/parts.h"
 #include "host/radiosity/direct.h"
 #include "host/radiosity/plan.h"
 #include "host/radiosity/point_irradiance.h"
-#include "host/scene/load_scene.h"
 #include "host/stages/indirect_stages.h"
 #include "host/stages/prepared_scene.h"
 #include "tests/support/cache_folder.h"
@@ -51,7 +51,7 @@ BenchScene room(Session& session, std::size_t count) {
 /// A scene file or a bare cloud; `within`: what shines takes part in the exchange.
 BenchScene from_file(Session& session, const std::string& name, const std::string& file,
                      const std::vector<std::string>& overrides = {}, bool within = false) {
-  Scene scene = load_scene(file, overrides);
+  Scene scene = api::Scene::from_file(file, overrides).parts()->description();
   StageLog stages;
   PreparedScene ready = prepare_scene(session, scene, file.find(".toml") == std::string::npos, stages);
   BenchScene bench{name, ready.on_device, ready.choice.variant, {}, {}, {}, {}, ready.frame.side};
