@@ -348,6 +348,7 @@ int main(int argc, char** argv) {
       text += bench.tables() + "\n";
     }
     if (all || only_growth) {
+      const test::CacheFolder anew;
       text += "| points | fmm | directions 512 | gather mipmap 128 | gather all |\n|---|---|---|---|---|\n";
       for (const std::size_t points : {2'500u, 5'000u, 10'000u, 20'000u}) {
         const BenchScene scene = room(session, points);
