@@ -26,13 +26,14 @@ std::string millions(double rays) {
 class ExchangeBound {
 public:
   ExchangeBound(const ClusterTree& tree, View<double> radiosity) : tree_(tree), flux_(tree.nodes.size()) {
+    for (std::size_t i = 0; i < tree.points.size(); ++i)
+      point_flux_.push_back((radiosity[3 * i] + radiosity[3 * i + 1] + radiosity[3 * i + 2]) *
+                            double{tree.points[i].area});
     for (std::size_t node = 0; node < tree.nodes.size(); ++node) {
       const Cluster& c = tree.nodes[node];
       for (std::uint32_t i = c.first_point; i < c.first_point + c.count; ++i)
-        flux_[node] += flux_of(i, radiosity);
+        flux_[node] += point_flux_[i];
     }
-    for (std::size_t i = 0; i < tree.points.size(); ++i)
-      point_flux_.push_back(flux_of(i, radiosity));
   }
 
   double sent() const { return flux_.empty() ? 0.0 : flux_[0]; }
@@ -51,10 +52,6 @@ public:
   }
 
 private:
-  double flux_of(std::size_t i, View<double> radiosity) const {
-    return (radiosity[3 * i] + radiosity[3 * i + 1] + radiosity[3 * i + 2]) * double{tree_.points[i].area};
-  }
-
   void take(std::uint32_t ka, std::uint32_t kb, std::vector<std::array<std::uint32_t, 2>>& waiting) {
     const Cluster &a = tree_.nodes[ka], &b = tree_.nodes[kb];
     if (flux_[ka] == 0.0 && flux_[kb] == 0.0) return;
@@ -119,16 +116,13 @@ MethodPlan plan_method(Session& session, const ExchangeScene& scene, const Radio
   const double directions = static_cast<double>(clusters.place.size()) * settings.directions;
   char factor[80];
   std::snprintf(factor, sizeof factor, "; directions are taken above %g times theirs", dearer_factor);
-  const std::string asks = "the V-map would ask about " + millions(plan.vmap.rays) + " rays, " +
-                           std::to_string(settings.directions) + " directions a point " + millions(directions) + factor;
-  if (plan.vmap.rays <= dearer_factor * directions) {
-    plan.reason = asks;
-  } else if (emitters_exchange) {
-    plan.reason = asks + "; lamps that take part in the exchange are too small for directions";
-  } else {
+  plan.reason = "the V-map would ask about " + millions(plan.vmap.rays) + " rays, " +
+                std::to_string(settings.directions) + " directions a point " + millions(directions) + factor;
+  if (plan.vmap.rays <= dearer_factor * directions) return plan;
+  if (emitters_exchange)
+    plan.reason += "; lamps that take part in the exchange are too small for directions";
+  else
     plan.method = radiosity_method("directions");
-    plan.reason = asks;
-  }
   return plan;
 }
 
