@@ -16,6 +16,9 @@ constexpr double plain_interval = 5.0;
 constexpr double bar_interval = 0.1;
 constexpr int bar_width = 30;
 
+/// Less than this share is mostly the building of kernels, and says nothing of the rest.
+constexpr double least_share_to_go_by = 0.01;
+
 } // namespace
 
 std::string duration_text(double seconds) {
@@ -62,8 +65,8 @@ void Progress::draw(const std::string& line) {
 void Progress::update(double share) {
   if (!due()) return;
   const double elapsed = seconds_between(start_, last_), done = std::clamp(share, 1e-6, 1.0);
-  const std::string times =
-      duration_text(elapsed) + " elapsed, " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
+  std::string times = duration_text(elapsed) + " elapsed";
+  if (done >= least_share_to_go_by) times += ", " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
   const int percent = static_cast<int>(100.0 * done);
   if (!terminal_) {
     draw(stage_ + ": " + std::to_string(percent) + " %, " + times);

@@ -1,6 +1,6 @@
 #include "host/photon/emission_plan.h"
 #include "host/lights/light_kind.h"
-#include "host/photon/mixed_bits.h"
+#include "octree/mixed_bits.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -181,11 +181,6 @@ private:
   std::vector<Pair> pairs_;
 };
 
-/// A number in [0,1) from the seed.
-double turn_of(std::uint32_t seed) {
-  return static_cast<double>(mixed_bits(seed) >> 11) * 0x1p-53;
-}
-
 /// `photons` in proportion to weight(pair), whole numbers that add up to it: those of all pairs laid end to end, cut at
 /// every whole number, from a random start.
 template <typename Weight>
@@ -195,7 +190,7 @@ void deal_out(const std::vector<Pair>& pairs, double photons, std::uint32_t seed
   for (const Pair& pair : pairs)
     total += weight(pair);
   if (!(total > 0.0) || !(photons > 0.0)) return;
-  const double start = turn_of(seed);
+  const double start = uniform_of(seed);
   double sum = 0.0, before = std::floor(start);
   for (const Pair& pair : pairs) {
     const double expected = photons * (weight(pair) / total);

@@ -1,5 +1,5 @@
 #include "host/photon/kept_photons.h"
-#include "host/photon/mixed_bits.h"
+#include "octree/mixed_bits.h"
 #include <utility>
 
 namespace pointgi {

@@ -1,4 +1,5 @@
 #include "octree/vmap/make_links.h"
+#include "octree/mixed_bits.h"
 #include "octree/parallel.h"
 #include "octree/vmap/facing.h"
 #include "octree/vmap/pair_samples.h"
@@ -70,13 +71,6 @@ std::vector<T> joined(const std::vector<Part>& parts, const Get& get) {
   return all;
 }
 
-/// A hash of 32 bits (Wellons, lowbias32).
-std::uint32_t mixed_bits(std::uint32_t x) {
-  x = (x ^ x >> 16) * 0x7feb352du;
-  x = (x ^ x >> 15) * 0x846ca68bu;
-  return x ^ x >> 16;
-}
-
 class LinkMaker {
 public:
   LinkMaker(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options, View<Splat> obstacles)
@@ -126,10 +120,9 @@ private:
   /// Keeps each pair with the same probability, so that about sampled_ are left, which stand for all.
   void thin(std::vector<Pair>& wave) {
     const double share = static_cast<double>(sampled_) / static_cast<double>(wave.size());
-    const auto limit = static_cast<std::uint32_t>(share * 4294967295.0);
     std::vector<Pair> kept;
     for (const Pair& pair : wave)
-      if (mixed_bits(pair.a * 0x9e3779b9u ^ mixed_bits(pair.b + options_.seed)) <= limit) kept.push_back(pair);
+      if (uniform_of(mixed_bits((std::uint64_t{pair.a} << 32) + pair.b) + options_.seed) < share) kept.push_back(pair);
     if (kept.empty()) kept.push_back(wave.front());
     weight_ *= static_cast<double>(wave.size()) / static_cast<double>(kept.size());
     wave = std::move(kept);

@@ -1,16 +1,11 @@
 /// Every radiosity method and its knobs on the same scenes: seconds, rays, bytes, and how far the radiosity is from
 /// that of the solver of every pair, or where all pairs are too many from that of very many directions. bench_methods
 /// --help
-#include "host/api/parts.h"
 #include "host/radiosity/direct.h"
 #include "host/radiosity/plan.h"
-#include "host/radiosity/point_irradiance.h"
-#include "host/stages/indirect_stages.h"
-#include "host/stages/prepared_scene.h"
+#include "tests/bench/methods_scenes.h"
 #include "tests/support/cache_folder.h"
 #include "tests/support/exchange.h"
-#include "tests/support/lit_room.h"
-#include "tests/support/temporary_folder.h"
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -20,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 using namespace pointgi;
+using namespace pointgi::bench;
 
 namespace {
 
@@ -28,43 +24,6 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 void quiet(const std::string&) {}
-
-/// Points on the device, and the light that enters.
-struct BenchScene {
-  std::string name;
-  DevicePools pools;
-  TraversalVariant variant;
-  std::vector<Splat> points;
-  std::vector<std::uint8_t> exchanges;
-  std::vector<float> direct, emitted; ///< [points x 3]; emitted may be empty
-  double side = 1.0;
-
-  ExchangeScene exchange() const { return {pools, variant, points, exchanges, side, 1}; }
-};
-
-BenchScene room(Session& session, std::size_t count) {
-  test::LitRoom lit(session, count);
-  return {
-      fmt::format("room, {} points", lit.points.size()), lit.pools, lit.variant, lit.points, {}, lit.direct, {}, 1.0};
-}
-
-/// A scene file or a bare cloud; `within`: what shines takes part in the exchange.
-BenchScene from_file(Session& session, const std::string& name, const std::string& file,
-                     const std::vector<std::string>& overrides = {}, bool within = false) {
-  Scene scene = api::Scene::from_file(file, overrides).parts()->description();
-  StageLog stages;
-  PreparedScene ready = prepare_scene(session, scene, file.find(".toml") == std::string::npos, stages);
-  BenchScene bench{name, ready.on_device, ready.choice.variant, {}, {}, {}, {}, ready.frame.side};
-  bench.points.assign(ready.points.begin(), ready.points.end());
-  bench.exchanges = exchanging_materials(scene);
-  bench.direct =
-      session.download(direct_irradiance_of_points(session, bench.pools, bench.variant, ready.lighting, bench.side,
-                                                   bench.points.size(), 64, !within, [] { return false; }),
-                       3 * bench.points.size());
-  if (within) bench.emitted = emitted_radiosity(ready.lighting, bench.points);
-  bench.name += fmt::format(", {} points", bench.points.size());
-  return bench;
-}
 
 struct Way {
   std::string name;
@@ -276,20 +235,34 @@ private:
   std::vector<Choice> choices_;
 };
 
-/// A closed box with a square lamp of side s on its ceiling, whose light is exchanged with that of the walls.
-BenchScene lamp_room(Session& session, double side) {
-  const test::TemporaryFolder folder;
-  const std::string text = fmt::format(
-      "version = 1\n[camera]\nposition = [0, 0, 0.9]\nlook_at = [0, 0, 0]\n[radiosity]\ndirect_light = \"radiosity\"\n"
-      "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.7, 0.7, 0.7]\n"
-      "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0, 0, 0]\nemission = [10, 10, 10]\n"
-      "[[shape]]\ntype = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\ninward = true\nspacing = 0.04\nmaterial = "
-      "\"white\"\n"
-      "[[shape]]\ntype = \"quad\"\ncorner = [{0}, 0.99, {0}]\nedge_u = [{1}, 0, 0]\nedge_v = [0, 0, {1}]\nspacing = "
-      "{2}\n"
-      "material = \"lamp\"\n",
-      -side / 2, side, std::min(0.04, side / 4));
-  return from_file(session, fmt::format("box with a lamp of {}", side), folder.write("lamp.toml", text), {}, true);
+/// Directions in shrubs that have more leaves in the same crown: the medians of three runs.
+std::string shrub_table(Session& session) {
+  constexpr int runs = 3;
+  std::string text =
+      "| shrub | points | million rays of 256 directions | seconds | exponent of seconds |\n|---|---|---|---|---|\n";
+  const Way w = way("", "directions", [](RadiositySettings& s) { s.directions = 256; });
+  double points_before = 0.0, seconds_before = 0.0;
+  for (const std::size_t count : {8'500u, 15'500u, 35'000u, 150'000u}) {
+    const BenchScene scene = shrub(session, count);
+    std::vector<double> seconds;
+    std::uint64_t rays = 0;
+    for (int i = 0; i < runs; ++i) {
+      const Result r = run(session, scene, w);
+      seconds.push_back(r.seconds);
+      rays = r.rays;
+    }
+    std::sort(seconds.begin(), seconds.end());
+    const auto points = static_cast<double>(scene.points.size());
+    const double median = seconds[runs / 2];
+    text += fmt::format(
+        "| {} | {} | {:.2f} | {:.2f} | {} |\n", count, scene.points.size(), 1e-6 * static_cast<double>(rays), median,
+        points_before == 0.0
+            ? ""
+            : fmt::format("{:.2f}", std::log(median / seconds_before) / std::log(points / points_before)));
+    points_before = points;
+    seconds_before = median;
+  }
+  return text;
 }
 
 /// Puts `text` between the marks of a file, in place of what stands there.
@@ -309,16 +282,18 @@ void write_between(const std::string& file, const std::string& mark, const std::
 int main(int argc, char** argv) {
   CLI::App app{"Radiosity methods against the solver of every pair"};
   std::string page;
-  bool only_room = false, only_lamps = false, only_growth = false, only_choice = false;
-  std::vector<std::string> files;
+  bool only_room = false, only_lamps = false, only_growth = false, only_shrubs = false, only_choice = false;
+  std::vector<std::string> files, boxed_files;
   app.add_option("--files", files, "scenes and clouds besides the rooms")->check(CLI::ExistingFile);
+  app.add_option("--boxed", boxed_files, "clouds whose y is up, each in a box with a lamp")->check(CLI::ExistingFile);
   app.add_option("--page", page, "a file between whose marks the tables are put")->check(CLI::ExistingFile);
   app.add_flag("--room", only_room, "only the rooms");
   app.add_flag("--lamps", only_lamps, "only lamps of several sizes");
   app.add_flag("--growth", only_growth, "only how rays grow with the points");
-  app.add_flag("--files-only", only_choice, "only --files");
+  app.add_flag("--shrubs", only_shrubs, "only how seconds grow with the points of a shrub");
+  app.add_flag("--files-only", only_choice, "only --files and --boxed");
   CLI11_PARSE(app, argc, argv);
-  const bool all = !only_room && !only_lamps && !only_growth && !only_choice;
+  const bool all = !only_room && !only_lamps && !only_growth && !only_shrubs && !only_choice;
   try {
     spdlog::set_level(spdlog::level::err);
     const test::CacheFolder empty; // or V-maps of earlier runs are taken
@@ -364,14 +339,18 @@ int main(int argc, char** argv) {
       }
       text += "\n";
     }
+    if (all || only_shrubs) text += shrub_table(session) + "\n";
     if (all || only_choice) {
       Bench bench(session);
-      for (const std::string& file : files) {
+      const auto measure = [&](const BenchScene& scene) {
         const std::vector<Way> usual = usual_ways();
-        bench.measure(from_file(session, std::filesystem::path(file).stem().string(), file), many_directions(),
-                      {usual.begin(), usual.begin() + 6}, true);
-      }
-      if (!files.empty()) text += bench.tables();
+        bench.measure(scene, many_directions(), {usual.begin(), usual.begin() + 6}, true);
+      };
+      for (const std::string& file : files)
+        measure(from_file(session, std::filesystem::path(file).stem().string(), file));
+      for (const std::string& file : boxed_files)
+        measure(boxed(session, file));
+      if (!files.empty() || !boxed_files.empty()) text += bench.tables();
     }
     std::printf("\n%s", text.c_str());
     if (!page.empty()) write_between(page, "tables", text);

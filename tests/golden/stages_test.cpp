@@ -91,3 +91,54 @@ TEST_CASE("light that goes round between surfaces and mirrors asks who sees whom
     CHECK(rounds["radiosity"]["iterations"] > one["radiosity"]["iterations"]);
   }
 }
+
+TEST_CASE("light between surfaces is part of a picture unless the scene or the command has no need of it") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  const auto stats_of = [&](const std::string& input, const std::string& options) {
+    const Run run = run_program("render " + input + " --quiet -o " + folder.file("x.exr") + " --stats " +
+                                folder.file("s.json") + options);
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    return json_of(folder.file("s.json"));
+  };
+  const auto whole = stats_of(scene, " --set radiosity.method=fmm");
+  CHECK(names_of(whole["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "render", "image"});
+  CHECK(names_of(whole["stages"], false) == std::vector<std::string>{"normals", "photon"});
+  for (const char* figure : {"pairs_tested", "links", "rays"})
+    CHECK(whole["vmap"][figure].is_number());
+  for (const char* figure : {"order", "m2l", "p2p", "iterations", "residual"})
+    CHECK(whole["radiosity"][figure].is_number());
+  CHECK(whole["radiosity"]["method"] == "fmm");
+  CHECK(read_exr(folder.file("x.exr")).channels.count("Diffuse.G") == 1);
+  struct Case {
+    std::string options, reason;
+  };
+  const std::vector<Case> cases = {
+      {" --set radiosity.method=none", "radiosity.method = \"none\": direct light only"},
+      {" --set light.0.power_w=[0,0,0]", "the scene has no light and no emission"},
+      {" --set material.0.albedo=[0,0,0]", "nothing in the scene is diffuse with an albedo above 0"},
+      {" --integrator path", "the path tracer makes the picture"},
+  };
+  for (const Case& c : cases) {
+    const auto stats = stats_of(scene, c.options);
+    CAPTURE(c.options);
+    for (const char* stage : {"vmap", "fmm"})
+      CHECK(reason_of(stats["stages"], stage) == c.reason);
+    CHECK(stats.count("vmap") == 0);
+    CHECK(stats.count("radiosity") == 0);
+    CHECK((read_exr(folder.file("x.exr")).channels.count("Diffuse.G") == 1) == (c.options == " --integrator path"));
+  }
+  const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                                      "property float y\nproperty float z\nend_header\n"
+                                                      "0 0 0\n1 0 0\n0 1 0\n");
+  CHECK(reason_of(stats_of(cloud, " --size 16x12 --set radiosity.method=fmm")["stages"], "fmm")
+            .empty()); // a bare cloud, too
+  // A ball alone sends itself nothing, which the planner knows before it asks who sees whom.
+  const auto planned = stats_of(scene, "");
+  CHECK(names_of(planned["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "plan", "render", "image"});
+  for (const char* stage : {"vmap", "fmm"})
+    CHECK_THAT(reason_of(planned["stages"], stage), Contains("less than 0.001 of the light, radiosity.least_share"));
+}

@@ -11,4 +11,9 @@ inline std::uint64_t mixed_bits(std::uint64_t number) {
   return h ^ (h >> 32);
 }
 
+/// A number of [0, 1) that a whole number stands for.
+inline double uniform_of(std::uint64_t number) {
+  return static_cast<double>(mixed_bits(number) >> 11) * 0x1p-53;
+}
+
 } // namespace pointgi
