@@ -21,6 +21,10 @@ void before_ranges(void (*ask)()) {
   ask_before_range = ask;
 }
 
+void ask_now() {
+  if (ask_before_range != nullptr) ask_before_range();
+}
+
 namespace detail {
 
 namespace {

@@ -9,6 +9,9 @@ namespace pointgi {
 /// loop: ranges that no thread has begun are left out, and the loop throws it. Null: they call nothing.
 void before_ranges(void (*ask)());
 
+/// For long loops that are not of ranges: calls the `ask` of this thread, if it has one.
+void ask_now();
+
 namespace detail {
 /// Calls call(body, range) for every range in [0, ranges).
 void run_ranges(std::size_t ranges, void (*call)(const void* body, std::size_t range), const void* body);

@@ -1,5 +1,6 @@
 #include "host/radiosity/plan.h"
 #include "fmm/operators/point_pair.h"
+#include "octree/parallel.h"
 #include "octree/vmap/facing.h"
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ constexpr double pi = 3.14159265358979323846;
 /// Looks at two points that a look at two clusters is worth; those that the bound of a scene may take a point, and in
 /// all: a ball takes some 800 a point, and what is nearly flat but noisy would take all pairs. 3e8 take about 3 s.
 constexpr std::uint64_t work_of_clusters = 8, work_a_point = 1500, work_at_most = 300'000'000;
+constexpr std::uint64_t steps_between_asks = 4096; ///< about a tenth of a second
 
 std::string millions(double rays) {
   char text[40];
@@ -41,9 +43,11 @@ public:
   /// Infinity where it cannot be told in about `most_work` looks at two points.
   double received(double enough, std::uint64_t most_work) {
     std::vector<std::array<std::uint32_t, 2>> waiting{{0, 0}};
+    std::uint64_t steps = 0;
     while (!waiting.empty() && received_ <= enough) {
       work_ += work_of_clusters;
       if (work_ > most_work) return std::numeric_limits<double>::infinity();
+      if (++steps % steps_between_asks == 0) ask_now();
       const auto [ka, kb] = waiting.back();
       waiting.pop_back();
       take(ka, kb, waiting);

@@ -1,5 +1,6 @@
 /// What the planner knows of a scene before its visibility is asked for.
 #include "host/radiosity/plan.h"
+#include "octree/parallel.h"
 #include "octree/ref/segment_blocked.h"
 #include "tests/support/exchange.h"
 #include "tests/support/rooms.h"
@@ -50,6 +51,12 @@ TEST_CASE("the bound of light between surfaces: nothing of a ball, all of a room
     s.normal[2] = std::sqrt(1.0f - s.normal[0] * s.normal[0] - s.normal[1] * s.normal[1]);
   }
   CHECK(bound(plane, 0.5) == std::numeric_limits<double>::infinity());
+  // A run that is to end does not wait for it.
+  const ClusterTree tree = build_clusters(plane, {});
+  const std::vector<double> radiosity(3 * plane.size(), 0.5);
+  before_ranges([] { throw std::runtime_error("enough"); });
+  CHECK_THROWS_WITH(bound_of_exchange(tree, radiosity, 0.5, 1e30), "enough");
+  before_ranges(nullptr);
   // Unit squares 1 apart: form factor 0.199825 (truths.md), and 0.5 + 0.25 + ... = 1 times it at most.
   std::vector<Splat> sheets;
   add_quad(sheets, 30, {0.1, 0.1, 0.2}, {0.5, 0.0, 0.0}, {0.0, 0.5, 0.0}, {0.0, 0.0, 1.0}, 0.25);
