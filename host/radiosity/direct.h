@@ -7,6 +7,7 @@
 #include "host/cl/session.h"
 #include "host/passes/device_pools.h"
 #include "host/radiosity/occupancy.h"
+#include "shared/pair_types.h"
 #include <functional>
 #include <optional>
 
@@ -18,17 +19,19 @@ struct DirectOptions {
   std::uint64_t allocation_bytes = 0; ///< what one piece of them may take; 0: what the device gives in one
   /// Where they do not fit.
   std::string remedy = "use radiosity.method = \"directions\" or \"fmm\", a coarser spacing, or another --device";
-  bool keep = true; ///< the bits; else each apply traces all pairs anew, in as much memory as a few rows take
+  bool keep = true;         ///< the bits; else each apply traces all pairs anew, in as much memory as a few rows take
+  unsigned rays_a_pair = 1; ///< 2: each end asks for itself, by the same ray: more time, the same answers
   const Occupancy* occupancy = nullptr;       ///< visibility by marching through it; null: by rays
   std::function<void(double share)> progress; ///< of the rays, [0, 1], after every launch; may be empty
 };
 
-/// Bytes of the kept bits: one in both directions of each pair, in blocks of FMM_LANES points.
+/// Bytes of the kept bits: one an unordered pair, in squares of 256 x 256 points: 8192 s (s + 1) / 2 with
+/// s = ceil(points / 256) (kernels/shared/pair_types.h). About points² / 16.
 std::uint64_t direct_bytes(std::size_t points);
 
-/// Traces the visibility of all pairs once and keeps it on the device, a bit a pair in both directions; or traces it at
-/// each apply. A receiver's sources are summed in their own order by one work-item: the same bits whatever is kept, and
-/// whatever the threads and the launches.
+/// Traces the visibility of all pairs and keeps it on the device, a bit a pair, which both of its ends read; or traces
+/// it at each apply. A receiver's sources are summed in their own order by one work-item: the same bits whatever is
+/// kept, and whatever the threads and the launches.
 class DeviceDirect : public RadiosityOperator {
 public:
   /// `points`: those that exchange light, near ones close to each other in their order. `pools` are those of `variant`
@@ -46,36 +49,34 @@ public:
   double apply_seconds() const { return apply_seconds_; } ///< of the device, of all applies
 
 private:
-  /// Tiles of rows and columns of blocks, in one piece of memory: rows [first, end), columns [first_column,
-  /// end_column).
-  struct Tiles {
-    Buffer<cl_uchar> bits;
-    cl_uint first = 0, end = 0, first_column = 0, end_column = 0;
-
-    cl_uint row_bytes() const { return FMM_LANES * (end_column - first_column); }
-    cl_uint4 place() const { return {{first, end_column - first_column, first_column, 0}}; }
+  /// The tiles of the rows [first, end), in one piece of memory.
+  struct Band {
+    Buffer<cl_ulong> tiles;
+    cl_uint first = 0, end = 0;
   };
 
-  void make_bands(const DirectOptions& options);
-  Tiles allocate_tiles(cl_uint first, cl_uint end, cl_uint first_column, cl_uint end_column);
-  /// Pairs of the rows [first, end) with the columns [first_column, end_column), on and below the diagonal; what lies
-  /// above it goes to `of_columns` where `of_rows` does not hold it.
-  void trace(const Tiles& of_rows, const Tiles& of_columns, cl_uint first_column, cl_uint end_column);
-  /// Calls launch(column, columns, row, rows), which returns the device's seconds, for windows that cover the tiles on
-  /// and below the diagonal.
+  void check_memory(const DirectOptions& options) const;
+  /// Of at most so many bytes each, but of a row of squares at least.
+  void make_bands(std::uint64_t bytes);
+  void allocate(Band& band);
+  void trace(const Band& band);
+  /// Calls launch(column, columns, row, rows), which returns the device's seconds, for windows that cover the tiles of
+  /// the band.
   template <class Launch>
-  void in_windows(cl_uint first_row, cl_uint end_row, cl_uint first_column, cl_uint end_column, const Launch& launch);
-  /// Adds what the rows [first, end) receive from the columns of `tiles`.
-  void receive(const Tiles& tiles, cl_uint first, cl_uint end, const Buffer<cl_float>& flux);
-  void trace_and_receive(const Buffer<cl_float>& flux);
+  void in_windows(const Band& band, const Launch& launch);
+  PairRows launch_of(const Band& band, cl_uint row, cl_uint rows, cl_uint column, cl_uint columns) const;
+  /// Adds what rows receive by the pairs of the band: its own from the columns up to its end, rows before it from its
+  /// points. Band after band, from the first on.
+  void receive(const Band& band, const Buffer<cl_float>& flux);
 
   Session& session_;
   DevicePools pools_;
   std::vector<ExchangePoint> points_;
   cl_uint tiles_ = 0; ///< a row: blocks of FMM_LANES points
   cl_uint stride_ = 0;
-  std::vector<Tiles> bands_; ///< whole rows; empty where nothing is kept
+  std::vector<Band> bands_;
   bool keep_;
+  unsigned rays_a_pair_;
   std::optional<Occupancy> occupancy_;
   std::size_t group_; ///< work-items a tile
   float step_delta_;
@@ -83,8 +84,8 @@ private:
   Buffer<Splat> table_;
   Buffer<cl_uint> ray_count_;
   cl::Kernel pairs_, receive_;
-  Pace trace_pace_{2e4}; ///< tiles
-  Pace rows_{1.0};       ///< rows of receive_from_all
+  Pace trace_pace_{2e4};   ///< tiles
+  Pace receive_pace_{1.0}; ///< tiles
   std::function<void(double)> progress_;
   double tiles_done_ = 0.0;
   std::uint64_t rays_ = 0;

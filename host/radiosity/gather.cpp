@@ -34,8 +34,9 @@ void check(const GatherOptions& options) {
 
 } // namespace
 
-std::uint64_t gather_cache_bytes(std::size_t receivers, std::size_t senders) {
-  return (receivers + FMM_LANES - 1) / FMM_LANES * std::uint64_t{senders};
+std::uint64_t gather_cache_bytes(GatherSampling sampling, std::size_t points, std::size_t senders) {
+  return sampling == GatherSampling::all ? direct_bytes(points)
+                                         : (points + FMM_LANES - 1) / FMM_LANES * std::uint64_t{senders};
 }
 
 DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const TraversalVariant& variant,
@@ -46,8 +47,9 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
   options_.occupancy = nullptr;
   if (tree.points.empty()) return;
   if (options.occupancy != nullptr) occupancy_ = *options.occupancy;
-  if (options.sampling == GatherSampling::all && options.reciprocity) {
+  if (options.sampling == GatherSampling::all) {
     DirectOptions all;
+    all.rays_a_pair = options.reciprocity ? 1 : 2;
     all.keep = options.visibility_cache;
     all.occupancy = options.occupancy;
     all.step_delta = options.step_delta;
@@ -67,22 +69,20 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
   trace_ = session.kernel(tracing.file, tracing.options, "senders_visible");
   const bool picked = is_monte_carlo(options);
   const Program summing =
-      fmm_program(picked ? "radiosity/gather/receive_picked.cl" : "radiosity/direct/receive_from_all.cl");
-  receive_ = session.kernel(summing.file, summing.options, picked ? "receive_from_picked" : "receive_from_all");
+      fmm_program(picked ? "radiosity/gather/receive_picked.cl" : "radiosity/gather/receive_from_senders.cl");
+  receive_ = session.kernel(summing.file, summing.options, picked ? "receive_from_picked" : "receive_from_senders");
   if (options.sampling == GatherSampling::adaptive) {
     const std::vector<double> even(3 * points_.size(), 1.0);
     first_cut_ = refined_cut(tree, {0}, even, most_senders(tree, options) / first_share);
     take_cut(first_cut_);
   } else
-    windows_ = sender_windows(tree, options.sampling == GatherSampling::all ? 1 : options.window);
+    windows_ = sender_windows(tree, options.window);
   if (picked) {
     members_ = session.upload(windows_.members);
     device_windows_ = session.upload(windows_.windows);
     sender_count_ = static_cast<cl_uint>(windows_.windows.size());
     make_bands();
-  } else if (options.sampling == GatherSampling::all)
-    take_senders({{}, tree.points, points_});
-  else if (options.sampling != GatherSampling::adaptive)
+  } else if (options.sampling != GatherSampling::adaptive)
     take_senders(options.sampling == GatherSampling::fixed ? middle_senders(tree, windows_)
                                                            : mean_senders(tree, windows_));
 }
@@ -104,7 +104,7 @@ void DeviceGather::take_cut(const ClusterCut& cut) {
 
 void DeviceGather::make_bands() {
   bands_.clear();
-  const std::uint64_t wanted = gather_cache_bytes(points_.size(), sender_count_);
+  const std::uint64_t wanted = gather_cache_bytes(options_.sampling, points_.size(), sender_count_);
   const std::uint64_t available = options_.memory_bytes != 0 ? options_.memory_bytes : session_.bytes_left();
   if (options_.visibility_cache && wanted > available)
     throw Error(ErrorKind::memory, session_.info().name + ": the visibility cache of " +
@@ -126,45 +126,51 @@ void DeviceGather::make_bands() {
   receive_pace_ = Pace(100.0 * first_pairs / row_pairs, busy_work_items(session_.info()));
 }
 
+SenderRows DeviceGather::launch_of(const Band& band, std::size_t first, std::size_t rows, unsigned pass) const {
+  return {band.first,
+          band.first + static_cast<cl_uint>(first),
+          static_cast<cl_uint>(rows),
+          static_cast<cl_uint>(points_.size()),
+          sender_count_,
+          stride_,
+          sender_stride_,
+          pass,
+          options_.seed,
+          options_.step_delta};
+}
+
 void DeviceGather::trace(Band& band, unsigned pass) {
   const std::vector<cl::Memory> sight =
       occupancy_ ? occupancy_->arguments() : std::vector<cl::Memory>{pools_.nodes, pools_.leaves, pools_.points};
+  const std::vector<cl::Memory> asked = is_monte_carlo(options_)
+                                            ? std::vector<cl::Memory>{device_windows_.handle, members_.handle}
+                                            : std::vector<cl::Memory>{seen_.handle};
   const auto report = [&](double share) {
     if (options_.progress)
       options_.progress((band.first + share * (band.end - band.first)) / static_cast<double>(rows_));
   };
-  for_each_batch(
-      EqualItems{band.end - band.first}, trace_pace_, {{}, report}, [&](std::size_t first, std::size_t count) {
-        const LaunchShape shape =
-            LaunchShape::grid((sender_count_ + senders_at_once - 1) / senders_at_once, count, group_, 1);
-        const cl_uint row = band.first + static_cast<cl_uint>(first);
-        const auto points = static_cast<cl_uint>(points_.size());
-        session_.fill(ray_count_, cl_uint{0}, 1);
-        const double seconds =
-            is_monte_carlo(options_)
-                ? session_.launch(trace_, shape, sight, table_, points, device_windows_, members_, pass, options_.seed,
-                                  sender_count_, row, static_cast<cl_uint>(count), band.seen, band.first, ray_count_,
-                                  options_.step_delta)
-                : session_.launch(trace_, shape, sight, table_, points, seen_, sender_count_, row,
-                                  static_cast<cl_uint>(count), band.seen, band.first, ray_count_, options_.step_delta);
-        rays_ += session_.download(ray_count_, 1)[0];
-        return seconds;
-      });
+  for_each_batch(EqualItems{band.end - band.first}, trace_pace_, {{}, report},
+                 [&](std::size_t first, std::size_t count) {
+                   const LaunchShape shape =
+                       LaunchShape::grid((sender_count_ + senders_at_once - 1) / senders_at_once, count, group_, 1);
+                   session_.fill(ray_count_, cl_uint{0}, 1);
+                   const double seconds = session_.launch(trace_, shape, sight, table_, asked,
+                                                          launch_of(band, first, count, pass), band.seen, ray_count_);
+                   rays_ += session_.download(ray_count_, 1)[0];
+                   return seconds;
+                 });
   band.traced = true;
 }
 
 void DeviceGather::receive(const Band& band, unsigned pass, const Buffer<cl_float>& flux) {
   const std::size_t group = session_.info().is_cpu ? 8 : 32;
   for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t count) {
-    const cl_uint row = band.first + static_cast<cl_uint>(first);
-    const auto rows = static_cast<cl_uint>(count);
+    const LaunchShape shape = LaunchShape::line(count, group);
+    const SenderRows at = launch_of(band, first, count, pass);
     if (is_monte_carlo(options_))
-      return session_.launch(receive_, LaunchShape::line(count, group), row, rows, band.seen, band.first,
-                             device_windows_, members_, sender_count_, pass, options_.seed, point_planes_, flux,
-                             stride_, irradiance_);
-    return session_.launch(receive_, LaunchShape::line(count, group), row, rows, band.seen, band.first, sender_count_,
-                           cl_uint{0}, sender_count_, point_planes_, stride_, sender_planes_, flux, sender_stride_,
-                           irradiance_);
+      return session_.launch(receive_, shape, at, band.seen, device_windows_, members_, point_planes_, flux,
+                             irradiance_);
+    return session_.launch(receive_, shape, at, band.seen, point_planes_, sender_planes_, flux, irradiance_);
   });
 }
 
@@ -181,14 +187,12 @@ void DeviceGather::gather(View<double> radiosity, unsigned pass, std::vector<dou
     else if (!is_refined())
       take_cut(refined_cut(tree_, cut_, radiosity, std::min(most_senders(tree_, options_), 2 * cut_.size())));
   }
-  const bool own = is_monte_carlo(options_) || options_.sampling == GatherSampling::all;
-  const std::vector<double> sent = own ? std::vector<double>(radiosity.begin(), radiosity.end())
-                                   : options_.sampling == GatherSampling::fixed
-                                       ? middle_radiosity(senders_, radiosity)
-                                       : mean_radiosity(tree_, windows_, radiosity);
-  const auto flux = is_monte_carlo(options_) ? session_.upload(flux_planes(sent, points_, stride_))
-                                             : session_.upload(flux_planes(sent, senders_.sends, sender_stride_));
-  session_.fill(irradiance_, 0.0f, irradiance_.size);
+  const auto sent = [&] {
+    return options_.sampling == GatherSampling::fixed ? middle_radiosity(senders_, radiosity)
+                                                      : mean_radiosity(tree_, windows_, radiosity);
+  };
+  const auto flux = is_monte_carlo(options_) ? session_.upload(flux_planes(radiosity, points_, stride_))
+                                             : session_.upload(flux_planes(sent(), senders_.sends, sender_stride_));
   Buffer<cl_uchar> scratch;
   if (!options_.visibility_cache)
     scratch = session_.allocate<cl_uchar>(std::size_t{bands_.front().end} * sender_count_);
@@ -217,7 +221,7 @@ std::uint64_t DeviceGather::rays() const {
 
 std::uint64_t DeviceGather::cache_bytes() const {
   if (!options_.visibility_cache) return 0;
-  return pairs_ ? direct_bytes(tree_.points.size()) : gather_cache_bytes(tree_.points.size(), sender_count_);
+  return gather_cache_bytes(options_.sampling, tree_.points.size(), sender_count_);
 }
 
 } // namespace pointgi

@@ -17,7 +17,7 @@ enum class GatherSampling {
 struct GatherOptions {
   GatherSampling sampling = GatherSampling::all;
   unsigned window = 128;        ///< points of a window, at most; adaptive: senders are refined to points / window
-  bool reciprocity = true;      ///< one ray a pair for both directions; of `all` only
+  bool reciprocity = true;      ///< one ray a pair for both directions, else one for each; of `all` only
   bool visibility_cache = true; ///< what is visible is kept for later passes; not of monte_carlo, nor of adaptive
   const Occupancy* occupancy = nullptr; ///< visibility by marching through it; null: by rays
   unsigned seed = 1;
@@ -26,8 +26,9 @@ struct GatherOptions {
   std::function<void(double share)> progress; ///< of a pass, [0, 1], after every launch that traces; may be empty
 };
 
-/// Bytes of the visibility cache: a bit a receiver and sender, receivers in blocks of FMM_LANES.
-std::uint64_t gather_cache_bytes(std::size_t receivers, std::size_t senders);
+/// Bytes of the visibility cache: of all senders a bit an unordered pair, direct_bytes(points). Of others a bit a
+/// receiver and sender, ceil(points / 8) `senders`, a sender a window.
+std::uint64_t gather_cache_bytes(GatherSampling sampling, std::size_t points, std::size_t senders);
 
 class DeviceGather {
 public:
@@ -58,6 +59,7 @@ private:
   void take_senders(Senders&& senders);
   void take_cut(const ClusterCut& cut);
   void make_bands();
+  SenderRows launch_of(const Band& band, std::size_t first, std::size_t rows, unsigned pass) const;
   void trace(Band& band, unsigned pass);
   void receive(const Band& band, unsigned pass, const Buffer<cl_float>& flux);
 
@@ -66,7 +68,7 @@ private:
   const ClusterTree& tree_;
   GatherOptions options_;
   std::optional<Occupancy> occupancy_;
-  std::unique_ptr<DeviceDirect> pairs_; ///< of `all` with reciprocity, which it does alone
+  std::unique_ptr<DeviceDirect> pairs_; ///< of `all`, which it does alone
   SenderWindows windows_;
   ClusterCut first_cut_, cut_; ///< adaptive: of the first pass, and of this one
   Senders senders_;            ///< not of monte_carlo

@@ -46,11 +46,8 @@ public:
     }
     if (options.visibility_cache)
       log_info("gather: the visibility cache may take {}",
-               megabytes(all && options.reciprocity
-                             ? direct_bytes(tree_.points.size())
-                             : gather_cache_bytes(tree_.points.size(),
-                                                  all ? tree_.points.size()
-                                                      : sender_windows(tree_, options.window).windows.size())));
+               megabytes(gather_cache_bytes(options.sampling, tree_.points.size(),
+                                            all ? 0 : sender_windows(tree_, options.window).windows.size())));
     gather_ = std::make_unique<DeviceGather>(session, scene.pools, scene.variant, tree_, options);
     refines_ = options.sampling == GatherSampling::adaptive;
   }

@@ -197,7 +197,7 @@ std::vector<ProgramUse> all_programs() {
   }
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
                            "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl",
-                           "radiosity/gather/receive_picked.cl"})
+                           "radiosity/gather/receive_from_senders.cl", "radiosity/gather/receive_picked.cl"})
     uses.push_back({fmm_program(file), true, true});
   for (const unsigned voxels : {32u, 64u, 128u})
     for (const Program& program :

@@ -7,6 +7,7 @@
 #include "materials/phong.cl"
 #include "lib/sampling.cl"
 #include "shared/cone_types.h"
+#include "shared/pair_types.h"
 #include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
@@ -66,6 +67,12 @@ __kernel void probe_layout(__global uint* sizes) {
   sizes[48] = sizeof(Cone);
   sizes[49] = OFFSET(Cone, spread);
   sizes[50] = sizeof(VoxelShare);
+  sizes[51] = sizeof(PairRows);
+  sizes[52] = OFFSET(PairRows, points);
+  sizes[53] = OFFSET(PairRows, step_delta);
+  sizes[54] = sizeof(SenderRows);
+  sizes[55] = OFFSET(SenderRows, receivers);
+  sizes[56] = OFFSET(SenderRows, step_delta);
 }
 
 /* nodes[i] = the leaf or empty node that holds positions[i] (xyz), for i < count. */

@@ -139,8 +139,6 @@ TEST_CASE("what leaks through a thin wall, measured") {
     const std::vector<double> h = irradiance(splats, b, {64, bound.anisotropic});
     CHECK(mean_of(splats, h, 0, lit) > 0.8);
     CHECK(mean_of(splats, h, lit, splats.size()) < bound.most);
-    std::printf("behind a wall of %.2f voxels, %s: %.4f of the light before it\n", bound.voxels,
-                bound.anisotropic ? "six texels" : "one texel", mean_of(splats, h, lit, splats.size()));
     if (bound.voxels == 0.0 && !bound.anisotropic) CHECK(mean_of(splats, h, lit, splats.size()) > 0.1); // a known ill
   }
 }

@@ -85,18 +85,21 @@ TEST_CASE("direct on the device: the same bits in every variant and in any piece
   const auto first = Traced(splats).irradiance(b);
   for (const TraversalForm form : traversal_forms()) {
     const Traced scene(splats, plain_variant(form));
-    for (const std::uint64_t bytes : {1u, 5000u, 1u << 30}) { // one row of tiles, a few, all
-      CAPTURE(name_of(scene.variant), bytes);
-      DirectOptions options;
-      options.allocation_bytes = bytes;
-      double done = 0.0;
-      options.progress = [&](double share) {
-        CHECK(share >= done);
-        done = share;
-      };
-      CHECK(scene.irradiance(b, options) == first);
-      CHECK(done == Approx(1.0));
-    }
+    for (const bool keep : {true, false})
+      for (const std::uint64_t bytes : {1u, 30000u, 1u << 30}) { // a row of squares a piece, two and one, all
+        CAPTURE(name_of(scene.variant), keep, bytes);
+        DirectOptions options;
+        options.keep = keep;
+        options.rays_a_pair = keep ? 1 : 2;
+        options.allocation_bytes = bytes;
+        double done = 0.0;
+        options.progress = [&](double share) {
+          CHECK(share >= done);
+          done = share;
+        };
+        CHECK(scene.irradiance(b, options) == first);
+        CHECK(done == Approx(1.0));
+      }
   }
 }
 
@@ -130,7 +133,7 @@ TEST_CASE("direct on the device: linear, and the same bits again") {
 TEST_CASE("direct on the device: what does not fit is refused with what is wanted, what there is, and what to do") {
   const Traced scene(room_splats(2500));
   DirectOptions options;
-  options.memory_bytes = 500'000;
+  options.memory_bytes = direct_bytes(scene.splats.size()) - 1;
   try {
     DeviceDirect(session(), scene.pools, scene.variant, scene.splats, options);
     FAIL("it took less than a bit a pair");

@@ -111,11 +111,24 @@ TEST_CASE("directions on the device: the same in both forms of the octree, with 
   const Traced wide(splats), step(splats, TraversalForm::step);
   const auto kept = wide.irradiance(with(64), bright);
   CHECK(relative_l2(step.irradiance(with(64), bright), kept) < 1e-3); // a ray in a thousand meets a rim in one of them
-  for (const std::uint64_t bytes : {1u, 100'000u}) {                  // nothing fits; some does
+  std::vector<double> b, h;
+  for (const Splat& s : wide.points())
+    b.insert(b.end(), 3, bright(s));
+  const std::size_t points = wide.places.size();
+  const DeviceDirections all(session(), wide.pools, wide.variant, points, wide.places, with(64));
+  for (const std::uint64_t bytes : {1u, 100'000u}) { // nothing fits, some does
     DirectionsOptions options = with(64);
     options.memory_bytes = bytes;
+    DeviceDirections some(session(), wide.pools, wide.variant, points, wide.places, options);
     CAPTURE(bytes);
-    CHECK(wide.irradiance(options, bright) == kept);
+    CHECK(some.kept_bytes() <= bytes);
+    CHECK((some.kept_bytes() > 0) == (bytes > 1));
+    const std::uint64_t kept_rays = some.rays();
+    for (const unsigned applies : {1u, 2u}) {
+      some.apply(b, LinearisationPoint::current, h);
+      CHECK(h == kept);
+      CHECK(some.rays() == kept_rays + applies * (all.rays() - kept_rays)); // those of the rest, at each apply
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include "tests/support/device.h"
 #include "tests/support/run_program.h"
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -57,6 +58,40 @@ TEST_CASE("two views of one light solve it once, and each is what its own light 
   for (const std::string& channel : side.channels())
     CHECK(side.channel(channel) == alone.channel(channel));
   CHECK(side.point_ids() == alone.point_ids());
+}
+
+TEST_CASE("two lights of one context, each by its own method, are each what a context of its own gives", "[api]") {
+  const auto by = [](const char* method) {
+    api::Scene scene = corner();
+    scene.set("radiosity", {{"method", method}, {"tolerance", 1e-4}});
+    return scene;
+  };
+  const auto alone = [&](const char* method) {
+    return api::Light(api::Prepared(api::Context(), by(method))).radiosity();
+  };
+  const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
+    double square = 0.0, norm = 0.0;
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      square += std::pow(double{a[i]} - double{b[i]}, 2);
+      norm += std::pow(double{b[i]}, 2);
+    }
+    return std::sqrt(square / norm);
+  };
+  const api::Context context;
+  const api::Prepared of_gather(context, by("gather")), of_directions(context, by("directions"));
+  const api::Light gather(of_gather), directions(of_directions); // both are there before either is read
+  CHECK(ran(context, "gather") == 1);
+  CHECK(ran(context, "directions") == 1);
+  const std::vector<float> by_gather = gather.radiosity(), by_directions = directions.radiosity();
+  CHECK(by_gather == alone("gather"));
+  CHECK(by_directions == alone("directions"));
+  CHECK(api::Film(gather).channel("G") != api::Film(directions).channel("G"));
+  CHECK(gather.radiosity() == by_gather);
+  // What both are near: a ray for every pair. A pass is a bounce: gather leaves a residual of the tolerance. Directions
+  // near an edge see what pairs of points do not (tests/analytic/methods_test.cpp).
+  const std::vector<float> truth = alone("direct");
+  CHECK(difference(by_gather, truth) < 2e-4);
+  CHECK(difference(by_directions, truth) < 0.05);
 }
 
 TEST_CASE("a film has the size, the window and the channels that it is asked for", "[api]") {

@@ -1,6 +1,7 @@
 #include "host/passes/device_pools.h"
 #include "octree/ref/descend.h"
 #include "shared/cone_types.h"
+#include "shared/pair_types.h"
 #include "shared/photon_types.h"
 #include "shared/render_types.h"
 #include "shared/traversal_types.h"
@@ -69,6 +70,12 @@ TEST_CASE("device and host lay the shared structs out alike") {
       sizeof(Cone),
       offsetof(Cone, spread),
       sizeof(VoxelShare),
+      sizeof(PairRows),
+      offsetof(PairRows, points),
+      offsetof(PairRows, step_delta),
+      sizeof(SenderRows),
+      offsetof(SenderRows, receivers),
+      offsetof(SenderRows, step_delta),
   };
   const auto sizes = device.allocate<cl_uint>(host.size());
   cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_layout");

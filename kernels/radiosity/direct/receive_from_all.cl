@@ -1,44 +1,33 @@
 /* Irradiance of the points from every point that they see, a pair at a time (method.md section 4): the exact solver. */
+#include "lib/pair_tiles.cl"
 #include "radiosity/fmm/exchange.cl"
 
-#ifndef DIRECT_SOURCES
-#define DIRECT_SOURCES 256u /* summed apart: n terms of about the same size one by one lose sqrt(n) roundings in float */
-#endif
-
-/* irradiance[colour * stride + i] += sum over senders j of v_ij F_ij B_j, v_ij a bit, first_sender <= j < end_sender. Senders
- * are summed in blocks of DIRECT_SOURCES, and blocks one by one: the same bits for any division at their borders.
- * NDRange: 1-D, a work-item a block of FMM_LANES receivers, padded: row first_row + i of `rows`.
- *   seen     byte j - first_sender of a row, `row_bytes` long, is the block as sender j sees it, the lowest bit its first
- *            point (kernels/visibility/pairs.cl, kernels/visibility/senders_visible.cl); the buffer begins with row
- *            held_from; bits of points past the last are zero
- *   points   the receivers, as receivers_at reads them, planes `stride` apart
- *   senders  their planes, sender_stride apart; `flux` too */
-__kernel void receive_from_all(uint first_row, uint rows, const __global uchar* seen, uint held_from, uint row_bytes,
-                               uint first_sender, uint end_sender, const __global float* points, uint stride,
-                               const __global float* senders, const __global float* flux, uint sender_stride,
-                               __global float* irradiance) {
-  const uint id = get_global_id(0);
-  if (id >= rows)
+/* irradiance[colour * stride + i] += sum over j of v_ij F_ij B_j, v_ij a bit of a tile of the band: of a row in it, all j of
+ * columns before held_end; of a row before it, the j of its columns, which are the band's rows. Senders are summed square
+ * by square, SENDERS_SUMMED of them, and squares one by one: band after band gives the same bits for any bands.
+ * NDRange: 1-D, a work-item a row of FMM_LANES receivers, padded: row at.first_row + i of at.rows.
+ *   tiles   of the band, as pairs_visible writes them (PairRows); bits of points past the last are zero
+ *   points  planes at.stride apart, as receivers_at reads them; `flux` too */
+__kernel void receive_from_all(PairRows at, const __global ulong* tiles, const __global float* points,
+                               const __global float* flux, __global float* irradiance) {
+  if (get_global_id(0) >= at.rows)
     return;
-  const uint row = first_row + id;
-  const __global uchar* seen_by = seen + (ulong)(row - held_from) * row_bytes;
-  Receivers r = receivers_at(points, stride, FMM_LANES * row);
-  __global float* to = irradiance + FMM_LANES * row;
-  fmm_lanes red = load_fmm(to), green = load_fmm(to + stride), blue = load_fmm(to + FMM_PLANE(2, stride));
-  for (uint first = first_sender; first < end_sender; first += DIRECT_SOURCES) {
-    const uint end = min(first + DIRECT_SOURCES, end_sender);
-    for (uint j = first; j < end; ++j) {
-      const int lanes = seen_by[j - first_sender];
-      if (lanes == 0)
-        continue;
-      const fmm_lanes factor = exchange_with_point(&r, senders + j, sender_stride) * INVERSE_PI;
-      receive_flux(&r, select((fmm_lanes)(0.0f), factor, (((fmm_mask)(lanes) >> FMM_LANE_NUMBERS) & 1) != 0), flux,
-                   sender_stride, j);
+  const uint row = at.first_row + get_global_id(0);
+  Receivers r = receivers_at(points, at.stride, FMM_LANES * row);
+  Irradiance sum = irradiance_at(irradiance, at.stride, FMM_LANES * row);
+  const ulong before = PAIR_TILES(at.held_from / SQUARE_TILES);
+  for (uint first = row < at.held_from ? at.held_from : 0u; first < at.held_end; first += SQUARE_TILES) {
+    const uint end = min(first + SQUARE_TILES, at.held_end);
+    const bool mirrored = first > row; /* the square is that of the row and column exchanged */
+    const __global ulong* tile = tiles + ((mirrored ? PAIR_TILE(first, row) : PAIR_TILE(row, first)) - before);
+    for (uint column = first; column < end; ++column, tile += mirrored ? SQUARE_TILES : 1) {
+      ulong seen = *tile;
+      if (mirrored && seen + 1ul > 1ul) /* neither none nor all, which are their own mirror images */
+        seen = mirrored_tile(seen);
+      for (uint j = FMM_LANES * column; seen != 0ul; seen >>= FMM_LANES, ++j)
+        receive_from_sender(&r, (int)(seen & 255ul), points, flux, at.stride, j);
     }
-    red += r.red, green += r.green, blue += r.blue;
-    r.red = 0.0f, r.green = 0.0f, r.blue = 0.0f;
+    add_received(&sum, &r);
   }
-  store_fmm(red, to);
-  store_fmm(green, to + stride);
-  store_fmm(blue, to + FMM_PLANE(2, stride));
+  store_irradiance(&sum, irradiance, at.stride, FMM_LANES * row);
 }

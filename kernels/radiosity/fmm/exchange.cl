@@ -63,3 +63,37 @@ static inline void receive_flux(Receivers* r, fmm_lanes factor, const __global f
   r->green += factor * flux[FMM_PLANE(1, stride) + j];
   r->blue += factor * flux[FMM_PLANE(2, stride) + j];
 }
+
+/* What the point j of the planes `senders` gives to the receivers whose bits of `lanes` are set. */
+static inline void receive_from_sender(Receivers* r, int lanes, const __global float* senders, const __global float* flux,
+                                       uint stride, uint j) {
+  if (lanes == 0)
+    return;
+  const fmm_lanes factor = exchange_with_point(r, senders + j, stride) * INVERSE_PI;
+  receive_flux(r, select((fmm_lanes)(0.0f), factor, (((fmm_mask)(lanes) >> FMM_LANE_NUMBERS) & 1) != 0), flux, stride, j);
+}
+
+/* Irradiance of a block of receivers, of each colour. */
+typedef struct Irradiance {
+  fmm_lanes red, green, blue;
+} Irradiance;
+
+/* Planes `stride` apart. */
+static inline Irradiance irradiance_at(const __global float* planes, uint stride, uint first) {
+  const __global float* p = planes + first;
+  const Irradiance sum = {load_fmm(p), load_fmm(p + stride), load_fmm(p + FMM_PLANE(2, stride))};
+  return sum;
+}
+
+static inline void store_irradiance(const Irradiance* sum, __global float* planes, uint stride, uint first) {
+  __global float* p = planes + first;
+  store_fmm(sum->red, p);
+  store_fmm(sum->green, p + stride);
+  store_fmm(sum->blue, p + FMM_PLANE(2, stride));
+}
+
+/* Moves what the receivers have got to the sum. */
+static inline void add_received(Irradiance* sum, Receivers* r) {
+  sum->red += r->red, sum->green += r->green, sum->blue += r->blue;
+  r->red = 0.0f, r->green = 0.0f, r->blue = 0.0f;
+}

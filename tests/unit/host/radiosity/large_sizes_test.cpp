@@ -28,7 +28,8 @@ TEST_CASE("no kernel of radiosity finds a plane by 32 bits") {
   const std::regex product("(\\*|\\[) ?(stride|nodes|point_count)\\b *[^\\]]|\\b(stride|nodes|point_count) \\*");
   std::size_t planes = 0;
   for (const char* file :
-       {"fmm/exchange.cl", "fmm/expand.cl", "fmm/m2l.cl", "fmm/near.cl", "direct/receive_from_all.cl"}) {
+       {"fmm/exchange.cl", "fmm/expand.cl", "fmm/m2l.cl", "fmm/near.cl", "direct/receive_from_all.cl",
+        "gather/receive_from_senders.cl", "gather/receive_picked.cl"}) {
     std::ifstream in(std::string(POINTGI_SOURCE_DIR "/kernels/radiosity/") + file);
     std::size_t number = 0;
     bool comment = false;
