@@ -20,7 +20,8 @@ public:
     double radii = 0.0;
     for (const std::uint32_t p : places)
       radii += double{points[p].radius};
-    normal_scale_ = places.empty() ? 0.0f : radii_of_a_normal * static_cast<float>(radii / places.size());
+    normal_scale_ =
+        places.empty() ? 0.0f : radii_of_a_normal * static_cast<float>(radii / static_cast<double>(places.size()));
   }
 
   /// [begin, end): begin is a multiple of the size.
