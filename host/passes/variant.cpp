@@ -160,8 +160,15 @@ Program senders_program(const TraversalVariant& variant, unsigned voxels, bool m
   return sight_program(variant, "visibility/senders_visible.cl", voxels, monte_carlo ? " -D MONTE_CARLO" : "");
 }
 
+bool directions_in_beams(const TraversalVariant& variant, bool hemicube) {
+  return variant.grouping == RayGrouping::packet && !variant.patches && !hemicube;
+}
+
 Program directions_program(const TraversalVariant& variant, bool hemicube) {
-  return program(variant, "radiosity/directions/trace.cl", hemicube ? " -D HEMICUBE" : "");
+  return program(variant, "radiosity/directions/trace.cl",
+                 hemicube                                 ? " -D HEMICUBE"
+                 : directions_in_beams(variant, hemicube) ? " -D RAY_PACKETS"
+                                                          : "");
 }
 
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {

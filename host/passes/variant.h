@@ -89,6 +89,9 @@ Program segments_program(const TraversalVariant& variant);
 Program pairs_program(const TraversalVariant& variant, unsigned voxels = 0);
 Program senders_program(const TraversalVariant& variant, unsigned voxels, bool monte_carlo);
 
+/// Whether directions_program() has BEAM_RAYS points a work-item: with grouping packet, but for patches, which beams do
+/// not know, and a hemicube, whose directions neighbours do not share.
+bool directions_in_beams(const TraversalVariant& variant, bool hemicube);
 /// What points see in directions of their own, trace_directions.
 Program directions_program(const TraversalVariant& variant, bool hemicube);
 

@@ -1,5 +1,6 @@
 #include "host/radiosity/directions.h"
 #include "shared/fmm_types.h"
+#include "shared/traversal_types.h"
 #include <algorithm>
 
 namespace pointgi {
@@ -9,11 +10,19 @@ namespace {
 /// Points of the first launch, of which nothing is known yet.
 constexpr double first_traced = 256, first_received = 65536;
 
+cl_uint points_an_item(const TraversalVariant& variant, DirectionPattern pattern) {
+  return directions_in_beams(variant, pattern == DirectionPattern::hemicube) ? BEAM_RAYS : 1;
+}
+
 constexpr std::size_t receive_group = 64;
 constexpr std::size_t most_rays = 1u << 30; ///< of the smallest launch: their count has 32 bits
 
+/// Points whose hits lie together; of beams besides. Bands begin at whole blocks.
+constexpr cl_uint block = BEAM_RAYS;
+static_assert(block % FMM_LANES == 0);
+
 std::uint64_t in_whole_blocks(std::uint64_t points) {
-  return points / FMM_LANES * FMM_LANES;
+  return points / block * block;
 }
 
 } // namespace
@@ -22,10 +31,12 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
                                    std::size_t pool_points, View<std::uint32_t> places,
                                    const DirectionsOptions& options)
     : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
-      pool_points_(pool_points), group_(variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
+      pool_points_(pool_points), points_an_item_(points_an_item(variant, options.pattern)),
+      group_(points_an_item_ > 1 ? 1 : variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
       places_(places.begin(), places.end()),
-      trace_pace_(first_traced,
-                  std::min<std::size_t>(busy_work_items(session.info()), most_rays / set_.weights.size() + 1)),
+      trace_pace_(first_traced / points_an_item_,
+                  std::min<std::size_t>(busy_work_items(session.info()),
+                                        most_rays / points_an_item_ / set_.weights.size() + 1)),
       receive_pace_(first_received, busy_work_items(session.info())) {
   if (places_.empty()) return;
   const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
@@ -46,9 +57,9 @@ void DeviceDirections::keep_bands(const DirectionsOptions& options) {
   const std::uint64_t left = session_.bytes_left() / 4 * 3, an_apply = 2 * sizeof(cl_float4) * pool_points_;
   const std::uint64_t available =
       options.memory_bytes != 0 ? options.memory_bytes : std::max<std::uint64_t>(1, left - std::min(left, an_apply));
-  const std::uint64_t largest = std::max<std::uint64_t>(FMM_LANES, in_whole_blocks(piece / a_point));
+  const std::uint64_t largest = std::max<std::uint64_t>(block, in_whole_blocks(piece / a_point));
   // A band that is not kept needs its room, too.
-  at_once_ = static_cast<cl_uint>(std::clamp<std::uint64_t>(in_whole_blocks(available / 8 / a_point), FMM_LANES,
+  at_once_ = static_cast<cl_uint>(std::clamp<std::uint64_t>(in_whole_blocks(available / 8 / a_point), block,
                                                             std::min<std::uint64_t>(largest, 1u << 16)));
   std::uint64_t keep = points;
   if (points * a_point > available)
@@ -57,7 +68,7 @@ void DeviceDirections::keep_bands(const DirectionsOptions& options) {
     Band band;
     band.first = kept_;
     band.end = static_cast<cl_uint>(std::min(keep, kept_ + largest));
-    const std::uint64_t room = (band.end - band.first + FMM_LANES - 1) / FMM_LANES * FMM_LANES;
+    const std::uint64_t room = (band.end - band.first + block - 1) / block * block;
     band.hits = session_.allocate<cl_uint>(room * set_.weights.size());
     trace(band, [&](double share) {
       if (options.progress)
@@ -70,17 +81,18 @@ void DeviceDirections::keep_bands(const DirectionsOptions& options) {
 
 void DeviceDirections::trace(const Band& band, const std::function<void(double)>& progress) {
   const auto count = static_cast<cl_uint>(set_.weights.size());
-  for_each_batch(
-      EqualItems{band.end - band.first}, trace_pace_, {{}, progress}, [&](std::size_t first, std::size_t size) {
-        const cl_uint from = band.first + static_cast<cl_uint>(first);
-        session_.fill(ray_count_, cl_uint{0}, 1);
-        const double seconds = session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves,
-                                               pools_.points, place_buffer_, from, from + static_cast<cl_uint>(size),
-                                               cells_, count, seed_, band.hits, band.first, ray_count_, step_delta_);
-        rays_ += session_.download(ray_count_, 1)[0];
-        trace_seconds_ += seconds;
-        return seconds;
-      });
+  const std::size_t items = (band.end - band.first + points_an_item_ - 1) / points_an_item_;
+  for_each_batch(EqualItems{items}, trace_pace_, {{}, progress}, [&](std::size_t first, std::size_t size) {
+    const cl_uint from = band.first + points_an_item_ * static_cast<cl_uint>(first);
+    const cl_uint to = std::min(band.end, from + points_an_item_ * static_cast<cl_uint>(size));
+    session_.fill(ray_count_, cl_uint{0}, 1);
+    const double seconds =
+        session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves, pools_.points,
+                        place_buffer_, from, to, cells_, count, seed_, band.hits, band.first, ray_count_, step_delta_);
+    rays_ += session_.download(ray_count_, 1)[0];
+    trace_seconds_ += seconds;
+    return seconds;
+  });
 }
 
 void DeviceDirections::receive(const Band& band, const Buffer<cl_float4>& radiosity) {

@@ -23,8 +23,9 @@ struct DirectionsOptions {
 /// at each apply. The same bits either way, and for any launches: what a point sees depends on it and the seed alone.
 class DeviceDirections : public RadiosityOperator {
 public:
-  /// `places`: of the points that exchange light, in a pool of `pool_points`. `pools` are those of `variant` and hold
-  /// all that blocks. `session` and `pools` must outlive this. Throws Error(device), Error(memory).
+  /// `places`: of the points that exchange light, in a pool of `pool_points`; in any order, but rays in beams are
+  /// faster in that of in_blocks() (host/radiosity/point_blocks.h). `pools` are those of `variant` and hold all that
+  /// blocks. `session` and `pools` must outlive this. Throws Error(device), Error(memory).
   DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, std::size_t pool_points,
                    View<std::uint32_t> places, const DirectionsOptions& options);
 
@@ -52,7 +53,9 @@ private:
   Session& session_;
   DevicePools pools_;
   DirectionSet set_;
-  std::size_t pool_points_, group_;
+  std::size_t pool_points_;
+  cl_uint points_an_item_; ///< of the trace
+  std::size_t group_;
   cl_uint seed_;
   float step_delta_;
   std::vector<std::uint32_t> places_;
@@ -63,7 +66,7 @@ private:
   Buffer<float> weights_;
   Buffer<cl_float4> irradiance_;
   cl::Kernel trace_, receive_;
-  Pace trace_pace_, receive_pace_; ///< points
+  Pace trace_pace_, receive_pace_; ///< work-items, points
   std::uint64_t rays_ = 0;
   double trace_seconds_ = 0.0;
 };

@@ -212,7 +212,7 @@ enum class Stepping {
 };
 enum class RayGrouping {
   ray,   ///< a ray a work-item
-  packet ///< the eye rays of 2 x 2 pixels a work-item
+  packet ///< the eye rays of 2 x 2 pixels a work-item, direction k of BEAM_RAYS points
 };
 struct WorkGroup { ///< shape of a work-group; kernels over one dimension take the product
   unsigned x = 8, y = 4;

@@ -37,6 +37,9 @@ typedef struct RayPacketAnswer {
   pg_uint splat[PACKET_RAYS]; /* bytes 512-1023 */
 } RayPacketAnswer;
 
+/* Rays off as many surfaces that are traced together, where they run close together (kernels/traverse/wide_beam.cl). */
+#define BEAM_RAYS 16
+
 /* Overlapping discs stick out of the surface they stand for, so a ray that leaves a surface would meet its neighbours'
  * rims. A hit is taken for the surface itself, not for a blocker, when it lies within reach of the end and not high
  * above it, in units of the two discs' radii, and its disc faces the same way. A wall across, or the far side of a

@@ -1,12 +1,15 @@
 /// Directional sampling on the device: what points see, against linear scans and closed forms.
 #include "host/passes/build_pools.h"
 #include "host/radiosity/directions.h"
+#include "host/radiosity/point_blocks.h"
 #include "host/tune/variant_list.h"
+#include "tests/support/clouds.h"
 #include "tests/support/device.h"
 #include "tests/support/exchange.h"
 #include "tests/support/rooms.h"
 #include <catch2/catch.hpp>
 #include <numeric>
+#include <random>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -26,7 +29,9 @@ struct Traced {
   std::vector<std::uint32_t> places;
 
   explicit Traced(const std::vector<Splat>& splats, TraversalForm form = TraversalForm::wide)
-      : variant(plain_variant(form)), packed(build_pools(splats, variant)),
+      : Traced(splats, plain_variant(form)) {}
+  Traced(const std::vector<Splat>& splats, const TraversalVariant& of, const SplatClips& clips = {})
+      : variant(of), packed(build_pools(splats, variant, clips)),
         pools(upload_pools(session(), packed, variant.storage)), places(all_places(splats.size())) {}
 
   View<Splat> points() const { return points_of(packed); }
@@ -52,6 +57,13 @@ std::vector<Splat> widened(std::vector<Splat> splats) {
   for (Splat& s : splats)
     s.radius *= 1.1f;
   return splats;
+}
+
+std::size_t differences(const std::vector<double>& a, const std::vector<double>& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < b.size(); ++i)
+    count += a[i] != b[i];
+  return count;
 }
 
 /// Form factor of [0, x] x [0, y] at the distance 1 with the differential area at 0 that faces it.
@@ -151,4 +163,65 @@ TEST_CASE("directions on the device: rays and bytes are points times directions,
   DeviceDirections none(session(), room.pools, room.variant, points, {}, with(100));
   none.apply({}, LinearisationPoint::current, h);
   CHECK(h.empty());
+}
+
+TEST_CASE("directions on the device: beams see what single rays see, bit for bit") {
+  TraversalVariant single = plain_variant(TraversalForm::wide);
+  if (!session().info().is_cpu) {
+    WARN("no CPU device: it has no beams");
+    return;
+  }
+  struct Case {
+    const char* name;
+    std::vector<Splat> splats;
+    bool clipped;
+  };
+  std::vector<Splat> flat = room_splats(1500);
+  for (Splat& s : flat)
+    s.material += FLAT;
+  // Random discs and sheets see the outside: rays that meet nothing; their beams give up or never begin.
+  const std::vector<Case> cases{{"room", room_splats(3000), false},
+                                {"room, clipped", room_splats(1500), true},
+                                {"room, flat and clipped", flat, true},
+                                {"sheets", sheet_splats(room_splats(1500)), false},
+                                {"sheets, clipped", sheet_splats(inside_sphere(1500)), true},
+                                {"planes", plane_splats(14), false},
+                                {"all sorts", mixed_splats(), false}};
+  std::mt19937 g(11);
+  for (const Case& c : cases)
+    for (const unsigned lanes : {8u, 16u}) {
+      single.lanes = lanes;
+      single.clips = c.clipped;
+      TraversalVariant packets = single;
+      packets.grouping = RayGrouping::packet;
+      REQUIRE(directions_in_beams(packets, false));
+      const SplatClips clips = c.clipped ? random_clips(c.splats, 7) : SplatClips{};
+      Traced rays(c.splats, single, clips);
+      Traced beams(c.splats, packets, clips);
+      // A colour of its own a point: sums are the same where hits are.
+      std::vector<double> b(3 * rays.places.size());
+      for (double& value : b)
+        value = std::uniform_real_distribution<double>(0.0, 1.0)(g);
+      const auto seen = [&](const Traced& traced, std::uint64_t memory_bytes) {
+        DirectionsOptions options = with(100);
+        options.memory_bytes = memory_bytes;
+        DeviceDirections exchange(session(), traced.pools, traced.variant, b.size() / 3, traced.places, options);
+        std::vector<double> given, h, by_point(b.size());
+        for (const std::uint32_t p : traced.places)
+          given.insert(given.end(), b.begin() + 3 * p, b.begin() + 3 * p + 3);
+        exchange.apply(given, LinearisationPoint::current, h);
+        for (std::size_t i = 0; i < traced.places.size(); ++i)
+          std::copy_n(h.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, by_point.begin() + 3 * traced.places[i]);
+        return by_point;
+      };
+      const std::vector<double> truth = seen(rays, 0);
+      CAPTURE(c.name, lanes);
+      CHECK(differences(seen(beams, 0), truth) == 0); // neighbours of the tree, whose directions may differ
+      beams.places = in_blocks(beams.points(), beams.places, BEAM_RAYS);
+      CHECK(differences(seen(beams, 0), truth) == 0);
+      CHECK(differences(seen(beams, 300'000), truth) == 0); // some hits are kept
+      beams.places.resize(beams.places.size() - 7);         // the last block is not whole
+      rays.places = beams.places;
+      CHECK(differences(seen(beams, 0), seen(rays, 0)) == 0);
+    }
 }

@@ -1,10 +1,15 @@
 /* Directional sampling (method.md section 8): which splat each point sees in each of a set of directions.
  *   HEMICUBE  the directions are those of a hemicube's cells; else cells of the disc below the hemisphere, in each of
- *             which a place is drawn */
+ *             which a place is drawn
+ *   RAY_PACKETS  direction k of BEAM_RAYS points at once, whose order keeps those together that lie close and face about
+ *                the same way; not with HEMICUBE, whose directions are turned otherwise at each point, nor HAS_MLS */
 #define BOUNCED_RAYS
 #include "lib/sampling.cl"
 #include "shared/fmm_types.h"
 #include "traverse/traversal.cl"
+#ifdef RAY_PACKETS
+#include "radiosity/directions/beams.cl"
+#endif
 
 /* Direction k of a point, unit, in its own frame: its numbers depend on point, k and seed alone.
  * `cell`: first u, width in u, first v, width in v of the disc (cosine_direction); with HEMICUBE x, y, z, which are turned
@@ -25,22 +30,15 @@ static inline float3 direction_in_cell(float3 normal, float4 cell, uint point, u
 /* Hits are kept in blocks of FMM_LANES points: word FMM_LANES (block * count + k) + lane is that of direction k. */
 #define HIT_AT(i, k, count) (FMM_LANES * ((ulong)((i) / FMM_LANES) * (count) + (k)) + (i) % FMM_LANES)
 
-/* hits[HIT_AT(i - held_from, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or NO_SPLAT:
- * nothing, or the back of something, which is black.
- * NDRange: 1-D, padded, a work-item a point i, first <= i < end.
- *   directions  `count` cells (direction_in_cell)
- *   rays        grows by the number of rays traced */
-__kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,
-                               const __global float4* directions, uint count, uint seed, __global uint* hits,
-                               uint held_from, __global uint* rays, float step_delta) {
-  const uint i = first + get_global_id(0);
-  if (i >= end)
-    return;
-  const uint point = places[i];
-  const float4 centre = pool_point_texel(POINT_TEXELS * point), normal = pool_point_texel(POINT_TEXELS * point + 1u);
+static inline OcclusionEnds ends_at(float4 centre, float4 normal) {
   OcclusionEnds ends = free_ends();
   ends.origin_normal = normal.xyz;
   ends.origin_radius = centre.w;
+  return ends;
+}
+
+/* direction: to be set */
+static inline Ray ray_off(float4 centre, float step_delta) {
   Ray ray;
   ray.origin = centre.xyz;
   ray.t_min = -SEGMENT_MARGIN(centre.w);
@@ -48,17 +46,63 @@ __kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint fi
 #ifdef STEP_ABSOLUTE
   ray.step_delta = step_delta;
 #endif
+  return ray;
+}
+
+/* The splat whose front is seen where `hit` is the ray's nearest of all, or NO_SPLAT: nothing, or the back of something,
+ * which is black. Adds the rays traced to *rays. */
+static inline uint splat_seen(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit, float* rays) {
+  *rays += 1.0f;
+  hit = visible_hit(POOL_ARGS, ray, ends, hit, rays);
+  if (hit.splat == NO_SPLAT)
+    return NO_SPLAT;
+  hit.splat = facing_side(POOL_ARGS, ray, hit);
+  return is_back(normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat).xyz, ray.direction) ? NO_SPLAT : hit.splat;
+}
+
+/* hits[HIT_AT(i - held_from, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or
+ * NO_SPLAT.
+ * NDRange: 1-D, padded, a work-item a point i, first <= i < end; with RAY_PACKETS the BEAM_RAYS points from
+ * first + BEAM_RAYS get_global_id(0) on.
+ *   directions  `count` cells (direction_in_cell)
+ *   rays        grows by the number of rays traced */
+__kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,
+                               const __global float4* directions, uint count, uint seed, __global uint* hits,
+                               uint held_from, __global uint* rays, float step_delta) {
+#ifdef RAY_PACKETS
+  const uint begin = first + BEAM_RAYS * (uint)get_global_id(0);
+  if (begin >= end)
+    return;
+  const uint points = min((uint)BEAM_RAYS, end - begin);
+  DirectionBeams beams = beams_of_points(POOL_ARGS, places, begin, points);
+  float traced = 0.0f;
+  for (uint k = 0u; k < count; ++k) {
+    Hit found[BEAM_RAYS];
+    float3 direction[BEAM_RAYS];
+    const bool together = next_beam(POOL_ARGS, &beams, directions[k], k, seed, direction, found);
+    for (uint j = 0u; j < points; ++j) {
+      const float4 centre = pool_point_texel(POINT_TEXELS * beams.point[j]);
+      const OcclusionEnds ends = ends_at(centre, pool_point_texel(POINT_TEXELS * beams.point[j] + 1u));
+      Ray ray = ray_off(centre, step_delta);
+      ray.direction = direction[j];
+      const Hit hit = together ? found[j] : trace_closest_from(POOL_ARGS, ray, ends);
+      hits[HIT_AT(begin + j - held_from, k, count)] = splat_seen(POOL_ARGS, ray, ends, hit, &traced);
+    }
+  }
+#else
+  const uint i = first + get_global_id(0);
+  if (i >= end)
+    return;
+  const uint point = places[i];
+  const float4 centre = pool_point_texel(POINT_TEXELS * point), normal = pool_point_texel(POINT_TEXELS * point + 1u);
+  const OcclusionEnds ends = ends_at(centre, normal);
+  Ray ray = ray_off(centre, step_delta);
   float traced = 0.0f;
   for (uint k = 0u; k < count; ++k) {
     ray.direction = direction_in_cell(normal.xyz, directions[k], point, k, seed);
-    traced += 1.0f;
-    Hit hit = visible_hit(POOL_ARGS, ray, ends, trace_closest_from(POOL_ARGS, ray, ends), &traced);
-    if (hit.splat != NO_SPLAT) {
-      hit.splat = facing_side(POOL_ARGS, ray, hit);
-      if (is_back(normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat).xyz, ray.direction))
-        hit.splat = NO_SPLAT;
-    }
-    hits[HIT_AT(i - held_from, k, count)] = hit.splat;
+    hits[HIT_AT(i - held_from, k, count)] =
+        splat_seen(POOL_ARGS, ray, ends, trace_closest_from(POOL_ARGS, ray, ends), &traced);
   }
+#endif
   atomic_add(rays, (uint)traced);
 }
