@@ -25,10 +25,13 @@ struct BenchScene {
   ExchangeScene exchange() const { return {pools, variant, points, exchanges, side, 1}; }
 };
 
+/// With beams of directions where the device has them, as its default variant.
 inline BenchScene room(Session& session, std::size_t count) {
   test::LitRoom lit(session, count);
-  return {
-      fmt::format("room, {} points", lit.points.size()), lit.pools, lit.variant, lit.points, {}, lit.direct, {}, 1.0};
+  TraversalVariant variant = lit.variant;
+  variant.grouping = RayGrouping::packet;
+  if (!why_not(variant, session.info()).empty()) variant = lit.variant;
+  return {fmt::format("room, {} points", lit.points.size()), lit.pools, variant, lit.points, {}, lit.direct, {}, 1.0};
 }
 
 /// A scene file or a bare cloud; `within`: what shines takes part in the exchange.
