@@ -16,8 +16,8 @@ constexpr double plain_interval = 5.0;
 constexpr double bar_interval = 0.1;
 constexpr int bar_width = 30;
 
-/// Less than this share is mostly the building of kernels, and says nothing of the rest.
-constexpr double least_share_to_go_by = 0.01;
+/// A smaller share in less time is mostly the building of kernels, and says nothing of the rest.
+constexpr double share_to_go_by = 0.01, seconds_to_go_by = 30.0;
 
 } // namespace
 
@@ -66,7 +66,8 @@ void Progress::update(double share) {
   if (!due()) return;
   const double elapsed = seconds_between(start_, last_), done = std::clamp(share, 1e-6, 1.0);
   std::string times = duration_text(elapsed) + " elapsed";
-  if (done >= least_share_to_go_by) times += ", " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
+  if (done >= share_to_go_by || elapsed >= seconds_to_go_by)
+    times += ", " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
   const int percent = static_cast<int>(100.0 * done);
   if (!terminal_) {
     draw(stage_ + ": " + std::to_string(percent) + " %, " + times);

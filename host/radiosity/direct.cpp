@@ -134,6 +134,13 @@ void DeviceDirect::receive(const Band& band, const Buffer<cl_float>& flux) {
   });
 }
 
+std::uint64_t DeviceDirect::kept_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const Band& band : bands_)
+    bytes += sizeof(cl_ulong) * band.tiles.size;
+  return bytes;
+}
+
 void DeviceDirect::apply(View<double> radiosity, LinearisationPoint, std::vector<double>& irradiance) {
   irradiance.clear();
   if (points_.empty()) return;

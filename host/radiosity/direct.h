@@ -19,8 +19,10 @@ struct DirectOptions {
   std::uint64_t allocation_bytes = 0; ///< what one piece of them may take; 0: what the device gives in one
   /// Where they do not fit.
   std::string remedy = "use radiosity.method = \"directions\" or \"fmm\", a coarser spacing, or another --device";
-  bool keep = true;         ///< the bits; else each apply traces all pairs anew, in as much memory as a few rows take
-  unsigned rays_a_pair = 1; ///< 2: each end asks for itself, by the same ray: more time, the same answers
+  bool keep = true; ///< the bits; else each apply traces all pairs anew, in as much memory as a few rows take
+  /// 2: without reciprocity each end asks for itself. Both trace the ray from the lower index to the higher, so that
+  /// the answers are the same: what reciprocity saves can be measured.
+  unsigned rays_a_pair = 1;
   const Occupancy* occupancy = nullptr;       ///< visibility by marching through it; null: by rays
   std::function<void(double share)> progress; ///< of the rays, [0, 1], after every launch; may be empty
 };
@@ -45,6 +47,7 @@ public:
   void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
   std::uint64_t rays() const { return rays_; }
+  std::uint64_t kept_bytes() const;                       ///< of bits, as allocated; 0 where they are traced anew
   double trace_seconds() const { return trace_seconds_; } ///< of the device
   double apply_seconds() const { return apply_seconds_; } ///< of the device, of all applies
 

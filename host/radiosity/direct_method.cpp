@@ -2,6 +2,7 @@
 #include "host/radiosity/direct.h"
 #include "host/radiosity/method.h"
 #include "host/radiosity/solve_by_operator.h"
+#include "host/run.h"
 
 namespace pointgi {
 
@@ -18,6 +19,7 @@ public:
     options.progress = [&](double share) {
       report(std::to_string(static_cast<int>(100.0 * share)) + " % of the rays");
     };
+    log_info("direct: the visibility of all pairs takes {}", megabytes(direct_bytes(points_.size())));
     exchange_ = std::make_unique<DeviceDirect>(session, scene.pools, scene.variant, points_, options);
   }
 
@@ -26,7 +28,10 @@ public:
   }
   std::uint64_t rays() const override { return exchange_ ? exchange_->rays() : 0; }
   std::string summary() const override { return "a ray a pair"; }
-  std::vector<MethodStatistic> statistics() const override { return {}; }
+  std::vector<MethodStatistic> statistics() const override {
+    if (!exchange_) return {};
+    return {{"radiosity", "cache_bytes", exchange_->kept_bytes()}};
+  }
 
 private:
   std::vector<std::uint32_t> places_;

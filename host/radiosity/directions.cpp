@@ -1,4 +1,5 @@
 #include "host/radiosity/directions.h"
+#include "host/radiosity/point_blocks.h"
 #include "shared/fmm_types.h"
 #include "shared/traversal_types.h"
 #include <algorithm>
@@ -28,12 +29,12 @@ std::uint64_t in_whole_blocks(std::uint64_t points) {
 } // namespace
 
 DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                                   std::size_t pool_points, View<std::uint32_t> places,
-                                   const DirectionsOptions& options)
+                                   View<Splat> pool, View<std::uint32_t> places, const DirectionsOptions& options)
     : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
-      pool_points_(pool_points), points_an_item_(points_an_item(variant, options.pattern)),
+      pool_points_(pool.size), points_an_item_(points_an_item(variant, options.pattern)),
       group_(points_an_item_ > 1 ? 1 : variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
       places_(places.begin(), places.end()),
+      traced_(points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_), rank_(places_.size()),
       trace_pace_(first_traced / points_an_item_,
                   std::min<std::size_t>(busy_work_items(session.info()),
                                         most_rays / points_an_item_ / set_.weights.size() + 1)),
@@ -42,10 +43,15 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
   const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
   trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
   receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
-  place_buffer_ = session.upload(places_);
+  place_buffer_ = session.upload(traced_);
   cells_ = session.upload(set_.cells);
   weights_ = session.upload(set_.weights);
-  ray_count_ = session.allocate<cl_uint>(1);
+  ray_count_ = session.allocate<cl_uint>(2);
+  std::vector<std::uint32_t> at(pool_points_);
+  for (std::size_t i = 0; i < traced_.size(); ++i)
+    at[traced_[i]] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    rank_[i] = at[places_[i]];
   irradiance_ = session.allocate<cl_float4>(places_.size());
   keep_bands(options);
 }
@@ -85,11 +91,13 @@ void DeviceDirections::trace(const Band& band, const std::function<void(double)>
   for_each_batch(EqualItems{items}, trace_pace_, {{}, progress}, [&](std::size_t first, std::size_t size) {
     const cl_uint from = band.first + points_an_item_ * static_cast<cl_uint>(first);
     const cl_uint to = std::min(band.end, from + points_an_item_ * static_cast<cl_uint>(size));
-    session_.fill(ray_count_, cl_uint{0}, 1);
+    session_.fill(ray_count_, cl_uint{0}, 2);
     const double seconds =
         session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves, pools_.points,
                         place_buffer_, from, to, cells_, count, seed_, band.hits, band.first, ray_count_, step_delta_);
-    rays_ += session_.download(ray_count_, 1)[0];
+    const auto counts = session_.download(ray_count_, 2);
+    rays_ += counts[0];
+    beam_rays_ += counts[1];
     trace_seconds_ += seconds;
     return seconds;
   });
@@ -126,7 +134,7 @@ void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::ve
   irradiance.resize(radiosity.size);
   for (std::size_t i = 0; i < places_.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      irradiance[3 * i + c] = received[i].s[c];
+      irradiance[3 * i + c] = received[rank_[i]].s[c];
 }
 
 std::uint64_t DeviceDirections::kept_bytes() const {

@@ -6,6 +6,7 @@
 #include "host/cl/session.h"
 #include "host/passes/device_pools.h"
 #include "host/radiosity/direction_set.h"
+#include "octree/splat.h"
 #include <functional>
 
 namespace pointgi {
@@ -23,10 +24,11 @@ struct DirectionsOptions {
 /// at each apply. The same bits either way, and for any launches: what a point sees depends on it and the seed alone.
 class DeviceDirections : public RadiosityOperator {
 public:
-  /// `places`: of the points that exchange light, in a pool of `pool_points`; in any order, but rays in beams are
-  /// faster in that of in_blocks() (host/radiosity/point_blocks.h). `pools` are those of `variant` and hold all that
-  /// blocks. `session` and `pools` must outlive this. Throws Error(device), Error(memory).
-  DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, std::size_t pool_points,
+  /// `places`: of the points that exchange light, in the pool, whose points are `pool`. `pools` are those of `variant`
+  /// and hold all that blocks. With grouping packet, direction k of BEAM_RAYS points is traced as one beam, but through
+  /// patches and for hemicubes (directions_in_beams). `session` and `pools` must outlive this. Throws Error(device),
+  /// Error(memory).
+  DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, View<Splat> pool,
                    View<std::uint32_t> places, const DirectionsOptions& options);
 
   std::size_t points() const override { return places_.size(); }
@@ -35,11 +37,12 @@ public:
 
   unsigned directions() const { return static_cast<unsigned>(set_.weights.size()); } ///< a point
   std::uint64_t rays() const { return rays_; }            ///< with those that were traced again
-  std::uint64_t kept_bytes() const;                       ///< of hits
+  std::uint64_t beam_rays() const { return beam_rays_; }  ///< of them, first hits that beams have found
+  std::uint64_t kept_bytes() const;                       ///< of hits: 4 a ray, of points in whole blocks of BEAM_RAYS
   double trace_seconds() const { return trace_seconds_; } ///< of the device
 
 private:
-  /// The hits of the points [first, end) of `places`.
+  /// The hits of the points [first, end) of traced_.
   struct Band {
     Buffer<cl_uint> hits;
     cl_uint first = 0, end = 0;
@@ -58,16 +61,18 @@ private:
   std::size_t group_;
   cl_uint seed_;
   float step_delta_;
-  std::vector<std::uint32_t> places_;
-  std::vector<Band> bands_;        ///< kept: from the first point on
-  cl_uint kept_ = 0, at_once_ = 0; ///< points of all of these; of a band that is not
+  std::vector<std::uint32_t> places_; ///< as given
+  std::vector<std::uint32_t> traced_; ///< the same places in the order in which they are traced: blocks of beams
+  std::vector<std::uint32_t> rank_;   ///< of each of places_ in traced_
+  std::vector<Band> bands_;           ///< kept: from the first point on
+  cl_uint kept_ = 0, at_once_ = 0;    ///< points of all of these; of a band that is not
   Buffer<cl_uint> place_buffer_, ray_count_;
   Buffer<std::array<float, 4>> cells_;
   Buffer<float> weights_;
   Buffer<cl_float4> irradiance_;
   cl::Kernel trace_, receive_;
   Pace trace_pace_, receive_pace_; ///< work-items, points
-  std::uint64_t rays_ = 0;
+  std::uint64_t rays_ = 0, beam_rays_ = 0;
   double trace_seconds_ = 0.0;
 };
 

@@ -1,26 +1,17 @@
 /// radiosity.method = "directions": each point looks for light in so many directions.
 #include "host/radiosity/directions.h"
 #include "host/radiosity/method.h"
-#include "host/radiosity/point_blocks.h"
 #include "host/radiosity/solve_by_operator.h"
-#include "shared/traversal_types.h"
 
 namespace pointgi {
 
 namespace {
 
-std::vector<std::uint32_t> places_of(const ExchangeScene& scene, const RadiositySettings& settings) {
-  std::vector<std::uint32_t> places = exchanging_points(scene);
-  return directions_in_beams(scene.variant, settings.direction_set == "hemicube")
-             ? in_blocks(scene.points, std::move(places), BEAM_RAYS)
-             : places;
-}
-
 class PreparedDirections : public PreparedRadiosity {
 public:
   PreparedDirections(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                      const WorkReport& report)
-      : places_(places_of(scene, settings)), points_(points_at(scene, places_)) {
+      : places_(exchanging_points(scene)), points_(points_at(scene, places_)) {
     if (places_.empty()) return;
     DirectionsOptions options;
     options.directions = static_cast<unsigned>(settings.directions);
@@ -30,8 +21,7 @@ public:
     options.progress = [&](double share) {
       report(std::to_string(static_cast<int>(100.0 * share)) + " % of the rays");
     };
-    exchange_ =
-        std::make_unique<DeviceDirections>(session, scene.pools, scene.variant, scene.points.size, places_, options);
+    exchange_ = std::make_unique<DeviceDirections>(session, scene.pools, scene.variant, scene.points, places_, options);
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
@@ -43,7 +33,9 @@ public:
   }
   std::vector<MethodStatistic> statistics() const override {
     if (!exchange_) return {};
-    return {{"radiosity", "directions", exchange_->directions()}, {"radiosity", "hit_bytes", exchange_->kept_bytes()}};
+    return {{"radiosity", "directions", exchange_->directions()},
+            {"radiosity", "hit_bytes", exchange_->kept_bytes()},
+            {"radiosity", "beam_rays", exchange_->beam_rays()}};
   }
 
 private:

@@ -54,6 +54,7 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
     all.occupancy = options.occupancy;
     all.step_delta = options.step_delta;
     all.memory_bytes = options.memory_bytes;
+    all.allocation_bytes = options.allocation_bytes;
     all.remedy = "set radiosity.visibility_cache = false, or radiosity.sampling = \"mipmap\"";
     all.progress = options.progress;
     pairs_ = std::make_unique<DeviceDirect>(session, pools, variant, tree.points, all);
@@ -112,8 +113,9 @@ void DeviceGather::make_bands() {
                                        " senders takes a bit a pair, " + megabytes(wanted) + ", and the device has " +
                                        megabytes(available) +
                                        " left; set radiosity.visibility_cache = false, or a larger radiosity.window");
-  const std::uint64_t piece =
-      std::min(session_.info().max_allocation_bytes, options_.visibility_cache ? ~std::uint64_t{0} : scratch_bytes);
+  const std::uint64_t most =
+      options_.allocation_bytes != 0 ? options_.allocation_bytes : session_.info().max_allocation_bytes;
+  const std::uint64_t piece = options_.visibility_cache ? most : std::min(most, scratch_bytes);
   const auto rows = static_cast<cl_uint>(std::clamp<std::uint64_t>(piece / sender_count_, 1, rows_));
   for (cl_uint first = 0; first < rows_; first += rows) {
     Band band{{}, first, std::min(rows_, first + rows), false};
@@ -200,6 +202,7 @@ void DeviceGather::gather(View<double> radiosity, unsigned pass, std::vector<dou
     if (!options_.visibility_cache) band.seen = scratch;
     if (!options_.visibility_cache || !band.traced) trace(band, pass);
     receive(band, pass, flux);
+    if (!options_.visibility_cache) band.seen = {};
   }
   irradiance = rows_of_planes(session_.download(irradiance_, irradiance_.size), points_.size(), stride_);
 }
@@ -220,8 +223,11 @@ std::uint64_t DeviceGather::rays() const {
 }
 
 std::uint64_t DeviceGather::cache_bytes() const {
-  if (!options_.visibility_cache) return 0;
-  return gather_cache_bytes(options_.sampling, tree_.points.size(), sender_count_);
+  if (pairs_) return pairs_->kept_bytes();
+  std::uint64_t bytes = 0;
+  for (const Band& band : bands_)
+    bytes += band.seen.size;
+  return bytes;
 }
 
 } // namespace pointgi

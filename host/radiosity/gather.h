@@ -23,6 +23,7 @@ struct GatherOptions {
   unsigned seed = 1;
   float step_delta = 0.0f;                    ///< root cube units, of the absolute-delta variant only
   std::uint64_t memory_bytes = 0;             ///< what the cache may take; 0: what the device has left
+  std::uint64_t allocation_bytes = 0;         ///< what one piece of it may take; 0: what the device gives in one
   std::function<void(double share)> progress; ///< of a pass, [0, 1], after every launch that traces; may be empty
 };
 

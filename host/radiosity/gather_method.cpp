@@ -45,7 +45,7 @@ public:
       options.occupancy = &occupancy;
     }
     if (options.visibility_cache)
-      log_info("gather: the visibility cache may take {}",
+      log_info("gather: the visibility cache takes {}",
                megabytes(gather_cache_bytes(options.sampling, tree_.points.size(),
                                             all ? 0 : sender_windows(tree_, options.window).windows.size())));
     gather_ = std::make_unique<DeviceGather>(session, scene.pools, scene.variant, tree_, options);

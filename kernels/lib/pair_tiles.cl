@@ -1,5 +1,8 @@
 /* Tiles of pairs of points (shared/pair_types.h). */
 #include "shared/pair_types.h"
+#if FMM_LANES != 8
+#error "tiles are 8 x 8 bits, a ulong"
+#endif
 
 /* The tile (column, row) of the tile (row, column): bit FMM_LANES m + q goes to FMM_LANES q + m. Across the diagonal change
  * places the single bits of each 2 x 2, then the 2 x 2 of each 4 x 4, then the 4 x 4. */

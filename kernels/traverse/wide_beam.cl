@@ -6,8 +6,12 @@
 
 /* A beam with a ray farther off its middle than this, or that reaches more splats, gains nothing: in a room beams reach
  * 220 splats on average, and single rays take as long as a beam of some 450. */
+#ifndef BEAM_COSINE
 #define BEAM_COSINE 0.95f
+#endif
+#ifndef BEAM_SPLATS
 #define BEAM_SPLATS 512u
+#endif
 
 /* What bounds are known by, root cube units: several roundings of coordinates below 2. */
 #define BEAM_MARGIN 2e-6f
@@ -263,7 +267,7 @@ static inline bool trace_beam(POOL_PARAMS, const Beam* beam, const BeamBounds* b
     FOR_BLOCKS_OF_LEAF(current, block, { splats += hit_block_by_beam(block_pool, block, beam, b, far, best); })
     if (splats > BEAM_SPLATS)
       return false;
-    far = largest16(select(fma(best->t, b->cosine, b->start), (float16)(-INFINITY), beam->t_max < 0.0f)) + BEAM_MARGIN;
+    far = largest16(fma(best->t, b->cosine, b->start)) + BEAM_MARGIN;
   }
   return true;
 }

@@ -2,6 +2,7 @@
 /// that of the solver of every pair, or where all pairs are too many from that of very many directions. bench_methods
 /// --help
 #include "host/radiosity/direct.h"
+#include "host/radiosity/directions.h"
 #include "host/radiosity/plan.h"
 #include "tests/bench/methods_scenes.h"
 #include "tests/support/cache_folder.h"
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <map>
+#include <numeric>
 #include <spdlog/spdlog.h>
 
 using namespace pointgi;
@@ -235,6 +237,39 @@ private:
   std::vector<Choice> choices_;
 };
 
+/// What beams of directions gain over single rays: pairs of runs, one after the other.
+std::string beams_table(Session& session) {
+  constexpr int pairs = 7;
+  std::string text = "| scene | in beams | single rays s | beams s | ratio, median | least | most |\n"
+                     "|---|---|---|---|---|---|---|\n";
+  for (const BenchScene& scene : {room(session, 20'000), shrub(session, 15'500)}) {
+    if (!directions_in_beams(scene.variant, false)) continue;
+    std::vector<std::uint32_t> places(scene.points.size());
+    std::iota(places.begin(), places.end(), 0u);
+    double share = 0.0;
+    const auto seconds = [&](RayGrouping grouping) {
+      TraversalVariant variant = scene.variant;
+      variant.grouping = grouping;
+      const DeviceDirections directions(session, scene.pools, variant, scene.points, places, {});
+      share = static_cast<double>(directions.beam_rays()) / (512.0 * static_cast<double>(places.size()));
+      return directions.trace_seconds();
+    };
+    seconds(RayGrouping::ray); // builds the kernels
+    seconds(RayGrouping::packet);
+    std::vector<double> single, beams, ratios;
+    for (int i = 0; i < pairs; ++i) {
+      single.push_back(seconds(RayGrouping::ray));
+      beams.push_back(seconds(RayGrouping::packet));
+      ratios.push_back(beams.back() / single.back());
+    }
+    for (std::vector<double>* values : {&single, &beams, &ratios})
+      std::sort(values->begin(), values->end());
+    text += fmt::format("| {} | {:.0f} % | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", scene.name, 100.0 * share,
+                        single[pairs / 2], beams[pairs / 2], ratios[pairs / 2], ratios.front(), ratios.back());
+  }
+  return text;
+}
+
 /// Directions in shrubs that have more leaves in the same crown: the medians of three runs.
 std::string shrub_table(Session& session) {
   constexpr int runs = 3;
@@ -282,7 +317,8 @@ void write_between(const std::string& file, const std::string& mark, const std::
 int main(int argc, char** argv) {
   CLI::App app{"Radiosity methods against the solver of every pair"};
   std::string page;
-  bool only_room = false, only_lamps = false, only_growth = false, only_shrubs = false, only_choice = false;
+  bool only_room = false, only_lamps = false, only_growth = false, only_shrubs = false, only_beams = false,
+       only_choice = false;
   std::vector<std::string> files, boxed_files;
   app.add_option("--files", files, "scenes and clouds besides the rooms")->check(CLI::ExistingFile);
   app.add_option("--boxed", boxed_files, "clouds whose y is up, each in a box with a lamp")->check(CLI::ExistingFile);
@@ -290,10 +326,11 @@ int main(int argc, char** argv) {
   app.add_flag("--room", only_room, "only the rooms");
   app.add_flag("--lamps", only_lamps, "only lamps of several sizes");
   app.add_flag("--growth", only_growth, "only how rays grow with the points");
+  app.add_flag("--beams", only_beams, "only what beams of directions gain over single rays");
   app.add_flag("--shrubs", only_shrubs, "only how seconds grow with the points of a shrub");
   app.add_flag("--files-only", only_choice, "only --files and --boxed");
   CLI11_PARSE(app, argc, argv);
-  const bool all = !only_room && !only_lamps && !only_growth && !only_shrubs && !only_choice;
+  const bool all = !only_room && !only_lamps && !only_growth && !only_shrubs && !only_beams && !only_choice;
   try {
     spdlog::set_level(spdlog::level::err);
     const test::CacheFolder empty; // or V-maps of earlier runs are taken
@@ -339,6 +376,7 @@ int main(int argc, char** argv) {
       }
       text += "\n";
     }
+    if (all || only_beams) text += beams_table(session) + "\n";
     if (all || only_shrubs) text += shrub_table(session) + "\n";
     if (all || only_choice) {
       Bench bench(session);

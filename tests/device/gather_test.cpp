@@ -114,13 +114,32 @@ TEST_CASE("gather from windows: the fixed sender and the mean come near all, nea
       const double error = relative_l2(h, exact);
       CAPTURE(static_cast<int>(sampling), window, error);
       CHECK(h == again);
-      CHECK(gather.cache_bytes() == gather_cache_bytes(sampling, room.tree.points.size(), gather.senders()));
+      CHECK(gather.cache_bytes() == (room.tree.points.size() + 7) / 8 * gather.senders());
+      CHECK(gather_cache_bytes(sampling, room.tree.points.size(), gather.senders()) == gather.cache_bytes());
       if (window == 1) CHECK(error < 1e-4); // every point is its own window
       CHECK(error >= before);
       CHECK(error < 0.25);
       before = error;
     }
   }
+}
+
+TEST_CASE("gather in pieces of memory: the same bits as in one, kept or not") {
+  const Room room(room_splats(700));
+  for (const GatherSampling sampling :
+       {GatherSampling::all, GatherSampling::fixed, GatherSampling::mipmap, GatherSampling::monte_carlo})
+    for (const bool cache : {false, true}) {
+      if (cache && sampling == GatherSampling::monte_carlo) continue;
+      GatherOptions options = with(sampling, 8, cache);
+      std::vector<double> whole, pieces;
+      room.make(options).gather(room.radiosity, 1, whole);
+      options.allocation_bytes = 1; // a row each
+      DeviceGather gather = room.make(options);
+      gather.gather(room.radiosity, 1, pieces);
+      CAPTURE(static_cast<int>(sampling), cache);
+      CHECK(pieces == whole);
+      CHECK((gather.cache_bytes() > 0) == cache);
+    }
 }
 
 TEST_CASE(

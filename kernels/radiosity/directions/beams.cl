@@ -3,9 +3,11 @@
 #include "shared/fmm_types.h"
 #include "traverse/wide_beam.cl"
 
-/* After a direction in which the beam was slower than single rays, so many follow without one: twice as many each time,
- * none once a beam was faster. */
+/* After a direction in which the beam gave up, so many follow without one: 1, and twice as many after each that follows it,
+ * up to this; 1 again after a beam that did not give up. */
+#ifndef MOST_WITHOUT_BEAM
 #define MOST_WITHOUT_BEAM 128u
+#endif
 
 typedef struct DirectionBeams {
   Beam beam;                      /* its directions: of the direction last asked for */

@@ -8,6 +8,9 @@
 #include "shared/fmm_types.h"
 #include "traverse/traversal.cl"
 #ifdef RAY_PACKETS
+#if defined(HEMICUBE) || defined(HAS_MLS)
+#error "no beams of a hemicube's directions, nor through patches"
+#endif
 #include "radiosity/directions/beams.cl"
 #endif
 
@@ -65,7 +68,7 @@ static inline uint splat_seen(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit,
  * NDRange: 1-D, padded, a work-item a point i, first <= i < end; with RAY_PACKETS the BEAM_RAYS points from
  * first + BEAM_RAYS get_global_id(0) on.
  *   directions  `count` cells (direction_in_cell)
- *   rays        grows by the number of rays traced */
+ *   rays        [0] grows by the number of rays traced, [1] by those of them that beams trace */
 __kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,
                                const __global float4* directions, uint count, uint seed, __global uint* hits,
                                uint held_from, __global uint* rays, float step_delta) {
@@ -76,10 +79,12 @@ __kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint fi
   const uint points = min((uint)BEAM_RAYS, end - begin);
   DirectionBeams beams = beams_of_points(POOL_ARGS, places, begin, points);
   float traced = 0.0f;
+  uint in_beams = 0u;
   for (uint k = 0u; k < count; ++k) {
     Hit found[BEAM_RAYS];
     float3 direction[BEAM_RAYS];
     const bool together = next_beam(POOL_ARGS, &beams, directions[k], k, seed, direction, found);
+    in_beams += together ? points : 0u;
     for (uint j = 0u; j < points; ++j) {
       const float4 centre = pool_point_texel(POINT_TEXELS * beams.point[j]);
       const OcclusionEnds ends = ends_at(centre, pool_point_texel(POINT_TEXELS * beams.point[j] + 1u));
@@ -89,6 +94,7 @@ __kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint fi
       hits[HIT_AT(begin + j - held_from, k, count)] = splat_seen(POOL_ARGS, ray, ends, hit, &traced);
     }
   }
+  atomic_add(rays + 1, in_beams);
 #else
   const uint i = first + get_global_id(0);
   if (i >= end)

@@ -2,7 +2,9 @@
 #include "tests/support/clouds.h"
 #include "tests/support/rooms.h"
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
+#include <random>
 
 using namespace pointgi;
 using namespace pointgi::test;
@@ -22,6 +24,25 @@ double mixed_blocks(const std::vector<Splat>& splats, const std::vector<std::uin
     mixed += least < 0.5f;
   }
   return static_cast<double>(mixed) / static_cast<double>(blocks);
+}
+
+/// The mean length of the diagonals of the blocks' bounds.
+double width_of_blocks(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& places, std::size_t size) {
+  double sum = 0.0;
+  std::size_t blocks = 0;
+  for (std::size_t begin = 0; begin + size <= places.size(); begin += size, ++blocks) {
+    double square = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      float low = splats[places[begin]].position[a], high = low;
+      for (std::size_t i = begin; i < begin + size; ++i) {
+        low = std::min(low, splats[places[i]].position[a]);
+        high = std::max(high, splats[places[i]].position[a]);
+      }
+      square += (double{high} - low) * (double{high} - low);
+    }
+    sum += std::sqrt(square);
+  }
+  return sum / static_cast<double>(blocks);
 }
 
 } // namespace
@@ -46,8 +67,12 @@ TEST_CASE("blocks of points: they face about one way, the sides of sheets too") 
   for (const auto& splats : {room_splats(4000), sheet_splats(room_splats(2000))}) {
     std::vector<std::uint32_t> all(splats.size());
     std::iota(all.begin(), all.end(), 0u);
-    const double before = mixed_blocks(splats, all, 16), after = mixed_blocks(splats, in_blocks(splats, all, 16), 16);
-    CAPTURE(splats.size(), before, after);
-    CHECK(after < 0.3); // those that span an edge of the room, of so few
+    const auto blocks = in_blocks(splats, all, 16);
+    const double after = mixed_blocks(splats, blocks, 16), width = width_of_blocks(splats, blocks, 16);
+    std::shuffle(all.begin(), all.end(), std::mt19937(1));
+    const double before = mixed_blocks(splats, all, 16), before_width = width_of_blocks(splats, all, 16);
+    CAPTURE(splats.size(), before, after, before_width, width);
+    CHECK(after < 0.3 * before); // those that span an edge of the room, of so few
+    CHECK(width < 0.2 * before_width);
   }
 }
