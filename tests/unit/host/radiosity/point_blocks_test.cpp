@@ -73,6 +73,7 @@ TEST_CASE("blocks of points: they face about one way, the sides of sheets too") 
     const double before = mixed_blocks(splats, all, 16), before_width = width_of_blocks(splats, all, 16);
     CAPTURE(splats.size(), before, after, before_width, width);
     CHECK(after < 0.3 * before); // those that span an edge of the room, of so few
-    CHECK(width < 0.2 * before_width);
+    CHECK(width <
+          0.3 * before_width); // 16 of 3,900 points on the walls of a room: a tenth of its width, and more at edges
   }
 }
