@@ -117,13 +117,18 @@ private:
                static_cast<double>(options_.most_rays);
   }
 
-  /// Keeps each pair with the same probability, so that about sampled_ are left, which stand for all.
+  /// Keeps about sampled_ pairs at even distances, from a random one on, which stand for all: pairs of one region
+  /// follow each other.
   void thin(std::vector<Pair>& wave) {
     const double share = static_cast<double>(sampled_) / static_cast<double>(wave.size());
+    double at = uniform_of(options_.seed + (std::uint64_t{map_.statistics.waves} << 32));
     std::vector<Pair> kept;
     for (const Pair& pair : wave)
-      if (uniform_of(mixed_bits((std::uint64_t{pair.a} << 32) + pair.b) + options_.seed) < share) kept.push_back(pair);
-    if (kept.empty()) kept.push_back(wave.front());
+      if ((at += share) >= 1.0) {
+        at -= 1.0;
+        kept.push_back(pair);
+      }
+    if (kept.empty()) kept.push_back(wave.back()); // the rounding of a million sums
     weight_ *= static_cast<double>(wave.size()) / static_cast<double>(kept.size());
     wave = std::move(kept);
   }

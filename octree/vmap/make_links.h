@@ -71,6 +71,6 @@ struct LinkEstimate {
 /// then stands for several. Unbiased but for the shares of near leaves, half of whose pairs of points are taken to face
 /// each other. options.most_rays has no effect: what would be asked without it is told. Deterministic, as make_links.
 LinkEstimate estimate_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options,
-                            View<Splat> obstacles = {}, std::size_t pairs_a_wave = 1000);
+                            View<Splat> obstacles = {}, std::size_t pairs_a_wave = 4000);
 
 } // namespace pointgi
