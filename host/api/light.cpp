@@ -73,7 +73,9 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
     if (!options.pass_file.empty())
       request.after_pass = [&](unsigned pass, const IndirectLight& so_far) {
         const LitCloud lit = pointgi::lit_cloud(parts_->request(), so_far, options.pass_content.exposure);
-        write_lit_ply(name_of_pass(options.pass_file, pass), from.scene, from.ready, lit);
+        const std::string file = name_of_pass(options.pass_file, pass);
+        write_lit_ply(file, from.scene, from.ready, lit);
+        log_info("light of pass {}: {}", pass, file);
       };
     indirect = run_indirect_stages(session, from.ready.on_device, request, stages);
     finish_exchange(parts_->request(), indirect);

@@ -16,8 +16,8 @@ constexpr double plain_interval = 5.0;
 constexpr double bar_interval = 0.1;
 constexpr int bar_width = 30;
 
-/// A smaller share in less time is mostly the building of kernels, and says nothing of the rest.
-constexpr double share_to_go_by = 0.01, seconds_to_go_by = 30.0;
+/// The pace of less time, or of a smaller share, is chance.
+constexpr double seconds_to_go_by = 0.2, share_to_go_by = 0.002;
 
 } // namespace
 
@@ -62,12 +62,21 @@ void Progress::draw(const std::string& line) {
   std::fflush(stderr);
 }
 
+std::optional<double> TimeLeft::seconds(double share, double now) {
+  if (share <= 0.0) return std::nullopt;
+  if (!begun_) begun_ = {share, now};
+  const double done = share - begun_->first, took = now - begun_->second;
+  if (done < share_to_go_by || took < seconds_to_go_by) return std::nullopt;
+  return took * (1.0 - share) / done;
+}
+
 void Progress::update(double share) {
+  const double now = seconds_between(start_, std::chrono::steady_clock::now());
+  const std::optional<double> left = time_left_.seconds(share, now);
   if (!due()) return;
   const double elapsed = seconds_between(start_, last_), done = std::clamp(share, 1e-6, 1.0);
   std::string times = duration_text(elapsed) + " elapsed";
-  if (done >= share_to_go_by || elapsed >= seconds_to_go_by)
-    times += ", " + duration_text(elapsed * (1.0 - done) / done) + " remaining";
+  if (left) times += ", " + duration_text(*left) + " remaining";
   const int percent = static_cast<int>(100.0 * done);
   if (!terminal_) {
     draw(stage_ + ": " + std::to_string(percent) + " %, " + times);

@@ -1,8 +1,21 @@
 #pragma once
 #include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace pointgi {
+
+/// How long work will still take, by its pace since the first share that was done: what came before it, as the building
+/// of kernels, does not come again.
+class TimeLeft {
+public:
+  /// `share` done, 0..1, at `now` seconds; both ascend. Nothing before there is a pace to go by.
+  std::optional<double> seconds(double share, double now);
+
+private:
+  std::optional<std::pair<double, double>> begun_; ///< the first share above 0, and when
+};
 
 /// Progress of one stage on stderr: a bar with elapsed and remaining time on a terminal, a plain line now and then
 /// elsewhere, nothing when quiet.
@@ -29,6 +42,7 @@ private:
   bool terminal_;
   bool drawn_ = false;
   std::chrono::steady_clock::time_point start_, last_;
+  TimeLeft time_left_;
 };
 
 /// "0.4 s", "12 s", "3 min 05 s", "2 h 10 min".

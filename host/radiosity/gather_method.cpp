@@ -19,7 +19,7 @@ class PreparedGather : public PreparedRadiosity {
 public:
   PreparedGather(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                  const WorkReport& report)
-      : report_(report), passes_(static_cast<unsigned>(settings.passes)) {
+      : report_(report), sampling_(settings.sampling), passes_(static_cast<unsigned>(settings.passes)) {
     const std::vector<std::uint32_t> places = exchanging_points(scene);
     if (places.empty()) return;
     tree_ = build_clusters(points_at(scene, places), ClusterOptions{});
@@ -70,7 +70,8 @@ public:
 
   std::uint64_t rays() const override { return gather_ ? gather_->rays() : 0; }
   std::string summary() const override {
-    return gather_ ? std::to_string(gather_->senders()) + " senders a pass" : "no point exchanges light";
+    return gather_ ? "sampling \"" + sampling_ + "\", " + std::to_string(gather_->senders()) + " senders a point"
+                   : "no point exchanges light";
   }
   std::vector<MethodStatistic> statistics() const override {
     if (!gather_) return {};
@@ -79,6 +80,7 @@ public:
 
 private:
   WorkReport report_;
+  std::string sampling_;
   unsigned passes_, pass_ = 0;
   bool refines_ = false;
   ClusterTree tree_;

@@ -108,9 +108,14 @@ void load_one_of(const TableReader& table, const char* key, const int (&values)[
 }
 
 void load_gather(const TableReader& table, RadiositySettings& radiosity) {
-  if (const auto sampling = table.choice("sampling", {"all", "static", "monte_carlo", "mipmap", "adaptive"}))
-    radiosity.sampling = *sampling;
-  if (const auto window = table.integer("window", limits::window)) radiosity.window = static_cast<int>(*window);
+  const auto sampling = table.choice("sampling", {"all", "static", "monte_carlo", "mipmap", "adaptive"});
+  if (const auto window = table.integer("window", limits::window)) {
+    radiosity.window = static_cast<int>(*window);
+    radiosity.sampling = "mipmap"; // "all", the default, has no windows
+    if (sampling == std::string("all"))
+      radiosity.notes.push_back("radiosity.window is not read with radiosity.sampling = \"all\"");
+  }
+  if (sampling) radiosity.sampling = *sampling;
   radiosity.reciprocity = table.boolean("reciprocity");
   radiosity.visibility_cache = table.boolean("visibility_cache");
   if (const auto visibility = table.choice("visibility", {"rays", "voxels"})) radiosity.visibility = *visibility;
@@ -126,6 +131,25 @@ void load_gather(const TableReader& table, RadiositySettings& radiosity) {
     table.fail("visibility_cache", "sampling = \"" + radiosity.sampling +
                                        "\" asks for other pairs in each pass; leave visibility_cache out, or choose "
                                        "\"all\", \"static\" or \"mipmap\"");
+}
+
+/// What the log should say where keys are given that the method does not read; "auto" reads those of the two methods
+/// that it chooses between.
+void note_keys_not_read(const TableReader& table, RadiositySettings& radiosity) {
+  const std::string& method = radiosity.method;
+  for (const std::string& key : radiosity_method_keys()) {
+    if (!table.has(key.c_str())) continue;
+    bool is_read = false;
+    std::string readers;
+    for (const RadiosityWords& row : radiosity_words()) {
+      if (std::find(row.keys.begin(), row.keys.end(), key) == row.keys.end()) continue;
+      const std::string reader = row.method;
+      is_read = is_read || reader == method || (method == "auto" && (reader == "fmm" || reader == "directions"));
+      readers += (readers.empty() ? "\"" : ", \"") + reader + "\"";
+    }
+    if (!is_read)
+      radiosity.notes.push_back("radiosity." + key + " is not read by method \"" + method + "\"; it is of " + readers);
+  }
 }
 
 /// The method that alone reads some of the section's keys; empty: none does.
@@ -155,8 +179,11 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   radiosity.place = table->place();
   if (const auto method = table->choice("method", radiosity_method_words()))
     radiosity.method = *method;
-  else if (const std::string implied = method_of_keys(*table); !implied.empty())
+  else if (const std::string implied = method_of_keys(*table); !implied.empty()) {
     radiosity.method = implied;
+    radiosity.notes.push_back("radiosity.method is \"" + implied + "\", which alone reads some of the given keys");
+  }
+  note_keys_not_read(*table, radiosity);
   if (const auto order = table->integer("order", limits::order)) radiosity.order = static_cast<int>(*order);
   if (const auto samples = table->integer("vmap_samples", limits::vmap_samples))
     radiosity.vmap_samples = static_cast<int>(*samples);

@@ -243,7 +243,11 @@ RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, c
 }
 
 void report_solution(const IndirectLight& light, const Solution& solution) {
-  log_info("radiosity: {}, {} applies of the operator, residual {:.2g}", light.prepared->summary(), solution.applies,
+  log_info("radiosity: method \"{}\", {}, {} {}{}, residual {:.2g}", light.method->name, light.prepared->summary(),
+           solution.applies, light.method->has_passes ? "pass" : "application",
+           solution.applies == 1      ? ""
+           : light.method->has_passes ? "es"
+                                      : "s",
            solution.residual);
   if (const std::string complaint = complaint_of(solution); !complaint.empty()) log_warning("radiosity: {}", complaint);
 }
@@ -282,6 +286,8 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   IndirectLight light;
   const RadiositySettings& settings = request.scene.radiosity;
   light.method = radiosity_method(settings.method);
+  for (const std::string& note : settings.notes)
+    log_info("{}", note);
   const auto skip = [&](const std::string& reason) {
     stages.skip("vmap", reason);
     stages.skip(light.method != nullptr ? light.method->name : radiosity_methods().front()->name, reason);

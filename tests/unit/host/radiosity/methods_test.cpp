@@ -79,3 +79,26 @@ TEST_CASE("the loader takes every method and every key that a method reads, and 
   CHECK(key_values().size() == radiosity_method_keys().size());
   CHECK_THROWS_AS(load_scene(scene, {"radiosity.qqqq=1"}), Error);
 }
+
+TEST_CASE("the loader notes keys that the method does not read, and which method a key has chosen") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ball.toml", small_scene());
+  const auto loaded = [&](std::vector<std::string> overrides) { return load_scene(scene, overrides).radiosity; };
+  CHECK(loaded({"radiosity.method=fmm", "radiosity.epsilon=0.01", "radiosity.tolerance=0.01"}).notes.empty());
+  CHECK(loaded({"radiosity.method=auto", "radiosity.epsilon=0.01", "radiosity.directions=64"}).notes.empty());
+  CHECK(loaded({"radiosity.method=cones", "radiosity.epsilon=0.01"}).notes ==
+        std::vector<std::string>{"radiosity.epsilon is not read by method \"cones\"; it is of \"fmm\""});
+  CHECK(loaded({"radiosity.method=none", "radiosity.voxels=32"}).notes ==
+        std::vector<std::string>{"radiosity.voxels is not read by method \"none\"; it is of \"gather\", \"cones\""});
+  CHECK(loaded({"radiosity.directions=64"}).notes ==
+        std::vector<std::string>{"radiosity.method is \"directions\", which alone reads some of the given keys"});
+  // Windows: "all", the default, has none.
+  CHECK(loaded({"radiosity.method=gather"}).sampling == "all");
+  const RadiositySettings windows = loaded({"radiosity.method=gather", "radiosity.window=64"});
+  CHECK(windows.sampling == "mipmap");
+  CHECK(windows.notes.empty());
+  const RadiositySettings all =
+      loaded({"radiosity.method=gather", "radiosity.window=64", "radiosity.sampling=\"all\""});
+  CHECK(all.sampling == "all");
+  CHECK(all.notes == std::vector<std::string>{"radiosity.window is not read with radiosity.sampling = \"all\""});
+}
