@@ -33,8 +33,7 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
     : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
       pool_points_(pool.size), points_an_item_(points_an_item(variant, options.pattern)),
       group_(points_an_item_ > 1 ? 1 : variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
-      places_(places.begin(), places.end()),
-      traced_(points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_), rank_(places_.size()),
+      places_(places.begin(), places.end()), rank_(places_.size()),
       trace_pace_(first_traced / points_an_item_,
                   std::min<std::size_t>(busy_work_items(session.info()),
                                         most_rays / points_an_item_ / set_.weights.size() + 1)),
@@ -43,13 +42,14 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
   const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
   trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
   receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
-  place_buffer_ = session.upload(traced_);
+  const std::vector<std::uint32_t> traced = points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_;
+  place_buffer_ = session.upload(traced);
   cells_ = session.upload(set_.cells);
   weights_ = session.upload(set_.weights);
   ray_count_ = session.allocate<cl_uint>(2);
   std::vector<std::uint32_t> at(pool_points_);
-  for (std::size_t i = 0; i < traced_.size(); ++i)
-    at[traced_[i]] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < traced.size(); ++i)
+    at[traced[i]] = static_cast<std::uint32_t>(i);
   for (std::size_t i = 0; i < places_.size(); ++i)
     rank_[i] = at[places_[i]];
   irradiance_ = session.allocate<cl_float4>(places_.size());

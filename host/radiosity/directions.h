@@ -42,7 +42,7 @@ public:
   double trace_seconds() const { return trace_seconds_; } ///< of the device
 
 private:
-  /// The hits of the points [first, end) of traced_.
+  /// The hits of the points [first, end), as they are traced.
   struct Band {
     Buffer<cl_uint> hits;
     cl_uint first = 0, end = 0;
@@ -62,8 +62,7 @@ private:
   cl_uint seed_;
   float step_delta_;
   std::vector<std::uint32_t> places_; ///< as given
-  std::vector<std::uint32_t> traced_; ///< the same places in the order in which they are traced: blocks of beams
-  std::vector<std::uint32_t> rank_;   ///< of each of places_ in traced_
+  std::vector<std::uint32_t> rank_;   ///< of each in the order in which they are traced: blocks of beams
   std::vector<Band> bands_;           ///< kept: from the first point on
   cl_uint kept_ = 0, at_once_ = 0;    ///< points of all of these; of a band that is not
   Buffer<cl_uint> place_buffer_, ray_count_;
