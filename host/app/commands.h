@@ -49,7 +49,8 @@ struct ProfileOptions {
   bool store = false;                 ///< the winner, even when a filter left variants out
   bool no_store = false;
   bool list = false;
-  std::string programs_folder; ///< write every program there instead
+  std::string programs_folder;   ///< write every program there instead
+  bool pairs_of_options = false; ///< of the programs only a cover of every two options
   bool quiet = false;
 };
 

@@ -184,9 +184,14 @@ int run(int argc, char** argv) {
       "--store", profile.store, "keep the best, for render to find, even when --filter left variants out");
   profile_command->add_flag("--no-store", profile.no_store, "do not keep the best")->excludes(store);
   profile_command->add_flag("--list", profile.list, "only list the variants, what they need, and which are valid here");
-  profile_command->add_option("--write-programs", profile.programs_folder,
-                              "only write each distinct program of all variants to this folder, with an index.tsv: "
-                              "file, source, kinds of device, options; needs no device");
+  CLI::Option* write_programs = profile_command->add_option("--write-programs", profile.programs_folder,
+                                                            "only write each distinct program of all variants to this "
+                                                            "folder, with an index.tsv: file, source, kinds of device, "
+                                                            "options; needs no device");
+  profile_command
+      ->add_flag("--pairs-of-options", profile.pairs_of_options,
+                 "of these programs only some, in which every two options of a kernel file meet that meet in any")
+      ->needs(write_programs);
 
   std::string info_file;
   CLI::App* info_command = app.add_subcommand("info", "what is in a cloud or scene");

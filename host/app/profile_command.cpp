@@ -6,6 +6,7 @@
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
 #include "host/stages/prepare.h"
+#include "host/tune/program_cover.h"
 #include "host/tune/self_test.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
@@ -59,10 +60,10 @@ void require_writable(const std::string& folder) {
 
 /// Each program as a compiler sees it, includes resolved, and an index of what it is built with: for compilers of
 /// devices that are not at hand.
-void write_programs(const std::string& folder) {
+void write_programs(const std::string& folder, bool pairs_only) {
   make_folder(folder);
   std::string index;
-  const std::vector<ProgramUse> programs = all_programs();
+  const std::vector<ProgramUse> programs = pairs_only ? cover_of_pairs(all_programs()) : all_programs();
   for (std::size_t i = 0; i < programs.size(); ++i) {
     const ProgramUse& use = programs[i];
     char name[32];
@@ -128,7 +129,7 @@ Profile measure(Session& session, const Scene& scene, const PlacedSplats& placed
 
 ExitCode run_profile(const ProfileOptions& options) {
   if (!options.programs_folder.empty()) {
-    write_programs(options.programs_folder);
+    write_programs(options.programs_folder, options.pairs_of_options);
     return ExitCode::done;
   }
   const std::vector<TraversalVariant> wanted = filtered(options.filter);

@@ -114,7 +114,8 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   for (const auto& [name, time] : stats.session->kernel_times())
     out["kernels"][name] = {{"launches", time.launches}, {"seconds", time.seconds}};
   out["programs"] = {{"compiled", stats.session->programs_compiled()},
-                     {"from_cache", stats.session->programs_from_cache()}};
+                     {"from_cache", stats.session->programs_from_cache()},
+                     {"kept_by_driver", stats.session->programs_kept_by_driver()}};
   out["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", stats.session->peak_bytes()}};
   out["seconds"] = stats.seconds;
   write_text(path, out.dump(1) + "\n");

@@ -22,6 +22,12 @@ std::string build_log(const cl::Program& program, const cl::Device& device) {
   }
 }
 
+/// Whether the driver keeps what it compiled between runs. PoCL does, each kernel as it was launched; asked for a
+/// program's binary it compiles all its kernels once more, for work-groups of any size, which nothing then uses.
+bool driver_keeps_kernels(const DeviceInfo& info) {
+  return info.platform == "Portable Computing Language";
+}
+
 } // namespace
 
 const cl::Program& Session::program(const std::string& file, const std::string& options) {
@@ -48,7 +54,8 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
   const std::string key = source + "\n" + all_options + "\n" + info_.platform + "\n" + info_.name + "\n" +
                           info_.driver + "\n" + info_.opencl;
   const std::vector<cl::Device> devices{device_};
-  if (const auto binary = load_binary(key)) {
+  const bool by_driver = driver_keeps_kernels(info_);
+  if (const auto binary = by_driver ? std::nullopt : load_binary(key)) {
     try {
       cl::Program program(context_, devices, cl::Program::Binaries{*binary});
       program.build(devices, all_options.c_str());
@@ -68,7 +75,8 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
                                        "\ndevice:  " + info_.name + " (" + info_.platform + ")\ndriver:  " +
                                        info_.driver + "\noptions: " + all_options + "\n" + build_log(program, device_));
   }
-  ++compiled_;
+  ++(by_driver ? kept_by_driver_ : compiled_);
+  if (by_driver) return program;
   const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
   if (!binaries.empty() && !binaries.front().empty()) store_binary(key, binaries.front());
   return program;

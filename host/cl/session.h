@@ -131,6 +131,8 @@ public:
   std::vector<std::pair<std::string, std::string>> programs_asked() const;
   std::size_t programs_compiled() const { return compiled_; }
   std::size_t programs_from_cache() const { return from_cache_; }
+  /// Given as source to a driver that keeps compiled kernels itself; whether it compiled them again only it knows.
+  std::size_t programs_kept_by_driver() const { return kept_by_driver_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
   /// What the device may still have for what is kept on it. Half of it where its memory is the host's.
   std::uint64_t bytes_left() const {
@@ -191,6 +193,7 @@ private:
   std::shared_ptr<Bytes> bytes_ = std::make_shared<Bytes>();
   std::size_t compiled_ = 0;
   std::size_t from_cache_ = 0;
+  std::size_t kept_by_driver_ = 0;
   std::string dump_folder_;
   std::function<void()> before_launch_;
   FaultInjector faults_;
