@@ -153,8 +153,12 @@ private:
     if (run.log) run.log(LogLevel::info, text);
   }
 
+  /// Reference and own setting are needed for any result: building kernels may take a budget that is small, and then as
+  /// much again is given to them.
+  void let_begin() { stop_at_ = elapsed() + options_.budget; }
+
   void find_reference() {
-    stop_at_ = latest_end * options_.budget;
+    let_begin();
     std::optional<std::pair<int, int>> size = options_.size;
     if (!options_.reference_file.empty()) {
       made_ = read_reference(options_.reference_file, size);
@@ -167,12 +171,12 @@ private:
     trade_.width = size->first;
     trade_.height = size->second;
     if (made_.first.channels.empty()) {
+      maker_.trace(1, 1, inner_); // builds the kernels
       const double most = std::min(reference_share * options_.budget, 0.5 * left());
-      stop_at_ = elapsed() + 1.5 * most;
+      let_begin();
       made_ = trace_reference(
           maker_, most, [this] { return elapsed(); }, inner_);
-      if (user_stops()) throw interruption();
-      stop_at_ = latest_end * options_.budget;
+      if (user_stops()) throw Error(ErrorKind::interrupted, "interrupted while the reference was made");
       keep_reference(made_, options_.folder);
     }
     trade_.reference.source = made_.source;
@@ -217,13 +221,16 @@ private:
   }
 
   bool measure_once(MeasuredRun& run, double most) {
-    stop_at_ = std::min(elapsed() + std::max(most, 0.0), latest_end * options_.budget);
     const double begun = elapsed();
+    if (run.name == own_name && run.repeats.empty())
+      let_begin();
+    else
+      stop_at_ = std::min(begun + std::max(most, 0.0), latest_end * options_.budget);
     try {
       const auto seed = static_cast<unsigned>(run.repeats.size() + 1);
       MadePicture made = maker_.make(run.setting.overrides, seed, inner_);
       if (made.compiled) {
-        stop_at_ = std::min(stop_at_ + (elapsed() - begun), latest_end * options_.budget);
+        stop_at_ = std::max(stop_at_, std::min(stop_at_ + (elapsed() - begun), latest_end * options_.budget));
         made = maker_.make(run.setting.overrides, seed, inner_);
       }
       add(run, made);
@@ -241,17 +248,33 @@ private:
     return true;
   }
 
+  /// False where the error is no number.
+  bool add_error(MeasuredRun& run, const Picture& picture) {
+    const std::vector<double> errors = reference_->errors(picture);
+    const double deviation = reference_->deviation(picture);
+    ErrorOfRepeats one;
+    one.add(errors, picture.width, picture.height, deviation);
+    const Estimate error = one.estimate();
+    if (!std::isfinite(error.value)) return false;
+    const std::size_t count = run.repeats.size();
+    ErrorOfRepeats& all = errors_[run.name];
+    if (all.count() == count) {
+      all.add(errors, picture.width, picture.height, deviation);
+      run.error = all.estimate();
+    } else { // of a resumed run, whose pictures are not at hand
+      add_to_mean(run.error.value, error.value, count);
+      add_to_mean(run.error.low, error.low, count);
+      add_to_mean(run.error.high, error.high, count);
+    }
+    return true;
+  }
+
   void add(MeasuredRun& run, const MadePicture& made) {
-    const std::vector<double> errors = reference_->errors(made.picture);
-    const Estimate error = mean_of_pixels(errors, made.picture.width, made.picture.height);
-    if (!std::isfinite(error.value)) {
+    const std::size_t count = run.repeats.size();
+    if (!add_error(run, made.picture)) {
       run.refused = "its picture holds values that are not finite";
       return;
     }
-    const std::size_t count = run.repeats.size();
-    add_to_mean(run.error.value, error.value, count);
-    add_to_mean(run.error.low, error.low, count);
-    add_to_mean(run.error.high, error.high, count);
     const Difference off = difference(made.picture, run.name, reference_->mean(), "reference").all;
     add_to_mean(run.bias, off.bias, count);
     add_to_mean(run.ssim, off.ssim, count);
@@ -280,6 +303,7 @@ private:
   Trade trade_;
   MadeReference made_;
   const Reference* reference_ = nullptr;
+  std::map<std::string, ErrorOfRepeats> errors_; ///< of runs by their names
   std::vector<Knob> knobs_;
 };
 

@@ -26,6 +26,9 @@ public:
 
   double error(const Picture& picture) const;
 
+  /// Standard deviation of error(picture) by the reference's noise alone, which all pictures have in common.
+  double deviation(const Picture& picture) const;
+
   static constexpr const char* colours[] = {"R", "G", "B"};
 
 private:
@@ -35,11 +38,24 @@ private:
   double eps_ = 0.0;
 };
 
-/// The mean of values of pixels [height x width] and its 95 % interval, by batches: the picture is cut into tiles of
-/// 8 x 8 pixels, of which the means vary; as neighbours are alike in what they show, only differences within groups of
-/// 2 x 2 tiles count. The quantile is Student's, its degrees of freedom by Welch and Satterthwaite. What differs from
-/// tile to tile without being chance counts too, so that the interval is rather too wide; what all tiles have in common
-/// by chance, as a light that was solved by few rays, does not: repeats with other seeds show that.
-Estimate mean_of_pixels(const std::vector<double>& values, int width, int height);
+/// The error of repeated pictures of one setting, and its 95 % interval. The picture is cut into tiles of 8 x 8 pixels.
+/// Of two or more pictures, made with other seeds, the interval comes from how the error of each tile varies from one
+/// to the next, as if tiles varied independently, and from the reference's noise. Of one picture it comes from how
+/// tiles differ within groups of 2 x 2: what differs there without being chance, as silhouettes do, counts too, and the
+/// interval is rather too wide. The quantile is Student's, its degrees of freedom by Welch and Satterthwaite.
+class ErrorOfRepeats {
+public:
+  /// `errors` [height x width] as of Reference::errors; `reference_deviation` as of Reference::deviation.
+  void add(const std::vector<double>& errors, int width, int height, double reference_deviation);
+  std::size_t count() const { return repeats_.size(); }
+  /// Of at least one picture.
+  Estimate estimate() const;
+
+private:
+  std::size_t columns_ = 0, rows_ = 0;
+  double pixels_ = 0.0, deviation_ = 0.0;
+  std::vector<std::vector<double>> repeats_; ///< sums of each tile
+  std::vector<double> pixels_of_tile_;
+};
 
 } // namespace pointgi
