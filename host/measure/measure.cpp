@@ -144,7 +144,8 @@ private:
     }
     trade_.width = earlier.width;
     trade_.height = earlier.height;
-    trade_.runs = std::move(earlier.runs);
+    for (MeasuredRun& one : earlier.runs) // what was refused for want of time may have it now
+      if (one.refused.empty()) trade_.runs.push_back(std::move(one));
     trade_.knobs = std::move(earlier.knobs);
     log_line(run_, fmt::format("{} runs of {} are taken over", trade_.runs.size(), path));
   }

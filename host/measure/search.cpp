@@ -41,6 +41,9 @@ std::optional<std::vector<std::string>> together(const std::vector<std::string>&
   return all;
 }
 
+/// A run may take this long [s] whatever the budget: its kernels may have to be built.
+constexpr double least_limit = 3.0;
+
 class Search {
 public:
   Search(Trade& trade, const std::vector<Knob>& knobs, const SearchWorld& world, const SearchOptions& options)
@@ -51,7 +54,7 @@ public:
     MeasuredRun own;
     own.name = own_name;
     if (!once(place_of(own), budget)) return false;
-    longest_ = std::max(options_.longest_share * budget, 3.0 * seconds_of(trade_.runs.front()));
+    longest_ = std::max({options_.longest_share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
     const bool whole = singles() && combinations() && repeats();
     mark_front(trade_);
     tell_curves();
