@@ -169,17 +169,21 @@ private:
   }
 
   std::vector<Candidate> candidates() const {
-    constexpr double near = 0.25; // of the logarithm: a quarter slower and less accurate than the front
-    std::vector<const MeasuredRun*> parents;
-    for (const MeasuredRun& run : trade_.runs)
-      if (run.refused.empty() && run.name != own_name && behind(run) <= near) parents.push_back(&run);
+    // Logarithms: a quarter slower and less accurate than the front; twice so, by what is foretold.
+    constexpr double near = 0.25, hopeless = 0.7;
+    std::vector<const MeasuredRun*> parents, singles;
     std::set<std::string> names;
-    for (const MeasuredRun& run : trade_.runs)
+    for (const MeasuredRun& run : trade_.runs) {
       names.insert(run.name);
+      if (!run.refused.empty() || run.name == own_name) continue;
+      if (behind(run) <= near) parents.push_back(&run);
+      if (!run.setting.knob.empty()) singles.push_back(&run);
+    }
     std::vector<Candidate> all;
-    for (std::size_t i = 0; i < parents.size(); ++i)
-      for (std::size_t j = i + 1; j < parents.size(); ++j)
-        if (auto candidate = combined(*parents[i], *parents[j]); candidate && names.insert(candidate->run.name).second)
+    for (const MeasuredRun* parent : parents)
+      for (const MeasuredRun* single : singles)
+        if (auto candidate = combined(*parent, *single);
+            candidate && candidate->rank <= hopeless && names.insert(candidate->run.name).second)
           all.push_back(*candidate);
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
     if (all.size() > options_.candidates) all.resize(options_.candidates);

@@ -27,11 +27,11 @@ struct SearchOptions {
 /// and trade.knobs. Runs that the trade has already are not measured once more where they have their repeats.
 ///
 /// Knobs alone go in turns from their cheap values to their dear ones; a value is skipped, and named in the knob's
-/// finding, where by the pace of the cheaper ones it would not fit. Combinations: what two settings on or near the
-/// front ask for, together; ranked by what both have saved and lost against the scene's own setting, the better ones
-/// measured once, the better half of these twice, half of that three times; then again from the new front, until no new
-/// one is left. What is left of the budget repeats the front, then the others, until their times are steady. The
-/// outcome depends on the answers alone. False where `measure` ended it.
+/// finding, where by the pace of the cheaper ones it would not fit. Combinations: what a setting on or near the front
+/// and a value of a knob ask for, together; ranked by what both have saved and lost against the scene's own setting,
+/// the better ones measured once, the better half of these twice, half of that three times; then again from the new
+/// front, until no new one is left. What is left of the budget repeats the front, then the others, until their times
+/// are steady. The outcome depends on the answers alone. False where `measure` ended it.
 bool search(Trade& trade, const std::vector<Knob>& knobs, const SearchWorld& world, const SearchOptions& options = {});
 
 /// The scene as it is, among the runs.

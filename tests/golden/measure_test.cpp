@@ -10,7 +10,7 @@ using Catch::Contains;
 
 namespace {
 
-struct Setting {
+struct Measuring {
   TemporaryFolder folder;
   std::string scene = folder.write("ball.toml", small_scene());
   std::string out = folder.file("out");
@@ -29,7 +29,7 @@ const MeasuredRun* named(const Trade& trade, const std::string& name) {
 } // namespace
 
 TEST_CASE("measure finds a front, keeps it, and goes on with it") {
-  const Setting setting;
+  const Measuring setting;
   const std::string command = "--knobs render.spp,radiosity.directions --size 32x32 --budget 10 --target 1";
   const Run run = setting.measure(command);
   INFO(run.err);
@@ -77,7 +77,7 @@ TEST_CASE("measure finds a front, keeps it, and goes on with it") {
 }
 
 TEST_CASE("measure compares with a picture that it is given") {
-  const Setting setting;
+  const Measuring setting;
   const std::string reference = setting.folder.file("reference.exr");
   REQUIRE(
       run_program("render " + setting.scene + " -o " + reference + " --size 40x32 --spp 64 --integrator path").code ==
@@ -97,7 +97,7 @@ TEST_CASE("measure compares with a picture that it is given") {
 }
 
 TEST_CASE("measure says what is wrong before it begins") {
-  const Setting setting;
+  const Measuring setting;
   const auto refused = [&](const std::string& more, int code, const std::string& text) {
     const Run run = setting.measure(more);
     INFO(more);
@@ -115,7 +115,7 @@ TEST_CASE("measure says what is wrong before it begins") {
 }
 
 TEST_CASE("an interrupted measurement keeps what it has") {
-  const Setting setting;
+  const Measuring setting;
   std::filesystem::create_directories(setting.out + "/pictures");
   MeasureOptions options;
   options.scene = setting.scene;

@@ -39,27 +39,28 @@ bool holds(const Estimate& e, double truth) {
 } // namespace
 
 TEST_CASE("the halves' noise falls out of errors") {
-  const Reference reference(noisy(0.1, 1), noisy(0.1, 2));
-  CHECK(reference.own_noise() == Approx(0.5 * 0.01).epsilon(0.1));
+  // relMSE divides by the reference's own square: of its noise sigma, some sigma^4 stays in.
+  const Reference reference(noisy(0.03, 1), noisy(0.03, 2));
+  CHECK(reference.own_noise() == Approx(0.5 * 0.0009).epsilon(0.1));
   const Estimate of_truth = estimate_of(reference.errors(noisy(0.0, 3)));
   CHECK(holds(of_truth, 0.0));
-  CHECK(of_truth.high < 0.002); // the halves alone would be wrong by 0.005
+  CHECK(of_truth.high < 0.0001); // the halves alone would be wrong by 0.0009
   const double error = 0.04;
   CHECK(reference.error(noisy(0.2, 4)) == Approx(error).epsilon(0.1));
 }
 
 TEST_CASE("a single reference's variance is taken off") {
-  Picture alone = noisy(0.1, 5);
+  Picture alone = noisy(0.02, 5);
   const double with_noise = Reference(alone).error(noisy(0.0, 6));
-  CHECK(with_noise == Approx(0.01).epsilon(0.1));
+  CHECK(with_noise == Approx(0.0004).epsilon(0.1));
   CHECK(Reference(alone).own_noise() == 0.0);
   for (const char* colour : Reference::colours) {
     std::vector<float>& variance = alone.channels[std::string("Variance.") + colour];
     for (const float value : noisy(0.0, 7).channels.at(colour))
-      variance.push_back(0.01f * value * value);
+      variance.push_back(0.0004f * value * value);
   }
   const Reference reference(alone);
-  CHECK(reference.own_noise() == Approx(0.01).epsilon(0.05));
+  CHECK(reference.own_noise() == Approx(0.0004).epsilon(0.05));
   CHECK(holds(estimate_of(reference.errors(noisy(0.0, 6))), 0.0));
 }
 
