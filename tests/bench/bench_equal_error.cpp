@@ -3,10 +3,10 @@
 /// pictures of the scene's own size, from the prepared cloud on, in turn, A B A B, and the median of the pairs counts.
 /// The path tracer takes few samples there, as many more of which would take that many times as long. bench_equal_error
 /// --help
+#include "host/measure/reference.h"
 #include "host/render/render.h"
 #include "host/stages/light_stages.h"
 #include "host/stages/prepared_scene.h"
-#include "tests/bench/reference_halves.h"
 #include "tests/support/cache_folder.h"
 #include <CLI/CLI.hpp>
 #include <cmath>

@@ -127,6 +127,12 @@ Words arguments_of(const std::string& line, std::string& before) {
     set_option(words, "--pixelbounds", "4,20,2,14", false);
     words.insert(words.end(), {"--set", "caustics.photons=2000"});
   }
+  if (words[0] == "measure") {
+    set_option(words, "--size", "32x32");
+    set_option(words, "--budget", "2");
+    set_option(words, "--knobs", "spp");
+    words.insert(words.end(), {"--set", "caustics.photons=2000"});
+  }
   const bool measures = std::none_of(words.begin(), words.end(), [](const std::string& word) {
     return word == "--list" || word == "--write-programs";
   });

@@ -1,0 +1,176 @@
+#include "host/measure/reference.h"
+#include <algorithm>
+#include <cmath>
+
+namespace pointgi {
+
+namespace {
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values)
+    sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// 97.5 % quantile of Student's distribution, by Fisher's expansion (Abramowitz and Stegun 26.7.5): within 2 % from
+/// three degrees of freedom on.
+double student_quantile(double freedom) {
+  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  const double n = std::max(freedom, 2.0);
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
+}
+
+constexpr std::size_t tile_side = 8, group_side = 2;
+
+/// A sum of independent variances, and the degrees of freedom that it was found with.
+struct Spread {
+  double variance = 0.0, squares = 0.0;
+  void add(double one, double freedom) {
+    variance += one;
+    squares += one * one / freedom;
+  }
+  double freedom() const { return squares > 0.0 ? variance * variance / squares : 1.0; }
+};
+
+} // namespace
+
+Reference::Reference(Picture first, Picture second) : mean_(first) {
+  for (const char* colour : colours) {
+    const std::vector<float>&x = first.channels.at(colour), &y = second.channels.at(colour);
+    std::vector<float>& mean = mean_.channels.at(colour);
+    std::vector<double>& noise = noise_.emplace_back(mean.size());
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      // (a - x) (a - y) = (a - (x + y) / 2)² - ((x - y) / 2)²
+      mean[i] = 0.5f * (x[i] + y[i]);
+      noise[i] = 0.25 * (double{x[i]} - y[i]) * (double{x[i]} - y[i]);
+    }
+  }
+  eps_ = difference(mean_, "reference", mean_, "reference").eps;
+}
+
+Reference::Reference(Picture alone) : mean_(std::move(alone)) {
+  eps_ = difference(mean_, "reference", mean_, "reference").eps;
+  for (const char* colour : colours) {
+    const auto variance = mean_.channels.find(std::string("Variance.") + colour);
+    if (variance == mean_.channels.end())
+      noise_.emplace_back(mean_.channels.at(colour).size(), 0.0);
+    else
+      noise_.emplace_back(variance->second.begin(), variance->second.end());
+  }
+}
+
+double Reference::own_noise() const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < noise_.size(); ++k) {
+    const std::vector<float>& b = mean_.channels.at(colours[k]);
+    for (std::size_t i = 0; i < b.size(); ++i)
+      sum += noise_[k][i] / (double{b[i]} * b[i] + eps_);
+  }
+  return sum / (3.0 * static_cast<double>(noise_.front().size()));
+}
+
+std::vector<double> Reference::errors(const Picture& picture) const {
+  std::vector<double> errors(noise_.front().size(), 0.0);
+  for (std::size_t k = 0; k < noise_.size(); ++k) {
+    const std::vector<float>&a = picture.channels.at(colours[k]), &b = mean_.channels.at(colours[k]);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      const double off = double{a[i]} - b[i];
+      errors[i] += (off * off - noise_[k][i]) / (double{b[i]} * b[i] + eps_) / 3.0;
+    }
+  }
+  return errors;
+}
+
+double Reference::error(const Picture& picture) const {
+  return mean_of(errors(picture));
+}
+
+double Reference::deviation(const Picture& picture) const {
+  // Of (d - nx) (d - ny) with noise of variance v each: 2 d² v + v². noise_ is v / 2 on average, its square 3/4 v².
+  double variance = 0.0;
+  for (std::size_t k = 0; k < noise_.size(); ++k) {
+    const std::vector<float>&a = picture.channels.at(colours[k]), &b = mean_.channels.at(colours[k]);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double off = double{a[i]} - b[i], n = noise_[k][i], scale = 1.0 / (double{b[i]} * b[i] + eps_) / 3.0;
+      variance += (4.0 * off * off * n + n * n / 0.75) * scale * scale;
+    }
+  }
+  return std::sqrt(variance) / static_cast<double>(noise_.front().size());
+}
+
+void ErrorOfRepeats::add(const std::vector<double>& errors, int width, int height, double reference_deviation) {
+  const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+  columns_ = (w + tile_side - 1) / tile_side;
+  rows_ = (h + tile_side - 1) / tile_side;
+  pixels_ = static_cast<double>(errors.size());
+  deviation_ = std::max(deviation_, reference_deviation);
+  pixels_of_tile_.assign(columns_ * rows_, 0.0);
+  std::vector<double>& sums = repeats_.emplace_back(columns_ * rows_, 0.0);
+  for (std::size_t y = 0; y < h; ++y)
+    for (std::size_t x = 0; x < w; ++x) {
+      const std::size_t tile = y / tile_side * columns_ + x / tile_side;
+      sums[tile] += errors[y * w + x];
+      pixels_of_tile_[tile] += 1.0;
+    }
+}
+
+namespace {
+
+/// Of the mean of two or more repeats' sums, by what each tile's vary.
+Spread spread_of_repeats(const std::vector<std::vector<double>>& repeats) {
+  const auto count = static_cast<double>(repeats.size());
+  Spread spread;
+  for (std::size_t tile = 0; tile < repeats.front().size(); ++tile) {
+    double mean = 0.0, squares = 0.0;
+    for (const std::vector<double>& sums : repeats)
+      mean += sums[tile] / count;
+    for (const std::vector<double>& sums : repeats)
+      squares += (sums[tile] - mean) * (sums[tile] - mean);
+    spread.add(squares / (count - 1.0) / count, count - 1.0);
+  }
+  return spread;
+}
+
+/// Of one picture's sum, by how the tiles of a group differ from the group's mean a pixel.
+Spread spread_of_groups(const std::vector<double>& sums, const std::vector<double>& pixels, std::size_t columns,
+                        std::size_t rows) {
+  Spread spread;
+  for (std::size_t y = 0; y < rows; y += group_side)
+    for (std::size_t x = 0; x < columns; x += group_side) {
+      std::vector<std::size_t> group;
+      for (std::size_t j = y; j < std::min(y + group_side, rows); ++j)
+        for (std::size_t i = x; i < std::min(x + group_side, columns); ++i)
+          group.push_back(j * columns + i);
+      // Where none is beside a tile, all others are.
+      std::vector<std::size_t> about = group;
+      if (group.size() == 1)
+        for (about.clear(); about.size() < sums.size();)
+          about.push_back(about.size());
+      double sum = 0.0, area = 0.0, squares = 0.0;
+      for (const std::size_t tile : about)
+        sum += sums[tile], area += pixels[tile];
+      for (const std::size_t tile : group)
+        squares += std::pow(sums[tile] - sum / area * pixels[tile], 2.0);
+      const auto size = static_cast<double>(group.size());
+      const double freedom = std::max(1.0, size - 1.0);
+      spread.add(squares * size / freedom, freedom);
+    }
+  return spread;
+}
+
+} // namespace
+
+Estimate ErrorOfRepeats::estimate() const {
+  double mean = 0.0;
+  for (const std::vector<double>& sums : repeats_)
+    mean += mean_of(sums) * static_cast<double>(sums.size()) / pixels_ / static_cast<double>(count());
+  const Spread spread =
+      count() > 1 ? spread_of_repeats(repeats_) : spread_of_groups(repeats_.front(), pixels_of_tile_, columns_, rows_);
+  double half = student_quantile(spread.freedom()) * std::sqrt(spread.variance) / pixels_;
+  if (count() > 1) half = std::hypot(half, student_quantile(1e6) * deviation_); // groups have it in them
+  return {mean, mean - half, mean + half};
+}
+
+} // namespace pointgi

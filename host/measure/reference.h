@@ -1,0 +1,61 @@
+#pragma once
+/// A noisy reference that leaves no noise of its own in the errors measured against it.
+#include "host/image/difference.h"
+#include "host/measure/trade.h"
+#include <vector>
+
+namespace pointgi {
+
+/// Two converged pictures of other seeds. The product of a picture's differences from the two is, on average, its
+/// squared difference from the truth: the halves' own noise falls out. Or one picture, whose noise is taken off by its
+/// channels Variance.R, .G and .B where it has them, and stays in where it has none.
+class Reference {
+public:
+  /// Both of one size, with R, G and B.
+  Reference(Picture first, Picture second);
+  explicit Reference(Picture alone);
+
+  const Picture& mean() const { return mean_; }
+
+  /// relMSE of mean(): of two halves by their difference, of one picture by its variance; 0 where that is not known.
+  double own_noise() const;
+
+  /// Of each pixel its share of relMSE: the mean over pixels is what `pointgi compare` calls relMSE, less the
+  /// reference's own noise. `picture`: of mean()'s size.
+  std::vector<double> errors(const Picture& picture) const;
+
+  double error(const Picture& picture) const;
+
+  /// Standard deviation of error(picture) by the reference's noise alone, which all pictures have in common.
+  double deviation(const Picture& picture) const;
+
+  static constexpr const char* colours[] = {"R", "G", "B"};
+
+private:
+  /// Of pixel i, what the reference's noise adds to the squared difference from mean(), a colour.
+  std::vector<std::vector<double>> noise_;
+  Picture mean_;
+  double eps_ = 0.0;
+};
+
+/// The error of repeated pictures of one setting, and its 95 % interval. The picture is cut into tiles of 8 x 8 pixels.
+/// Of two or more pictures, made with other seeds, the interval comes from how the error of each tile varies from one
+/// to the next, as if tiles varied independently, and from the reference's noise. Of one picture it comes from how
+/// tiles differ within groups of 2 x 2: what differs there without being chance, as silhouettes do, counts too, and the
+/// interval is rather too wide. The quantile is Student's, its degrees of freedom by Welch and Satterthwaite.
+class ErrorOfRepeats {
+public:
+  /// `errors` [height x width] as of Reference::errors; `reference_deviation` as of Reference::deviation.
+  void add(const std::vector<double>& errors, int width, int height, double reference_deviation);
+  std::size_t count() const { return repeats_.size(); }
+  /// Of at least one picture.
+  Estimate estimate() const;
+
+private:
+  std::size_t columns_ = 0, rows_ = 0;
+  double pixels_ = 0.0, deviation_ = 0.0;
+  std::vector<std::vector<double>> repeats_; ///< sums of each tile
+  std::vector<double> pixels_of_tile_;
+};
+
+} // namespace pointgi

@@ -1,0 +1,168 @@
+/// The order of measurements, driven by a model whose times and errors are known.
+#include "host/measure/search.h"
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+using namespace pointgi;
+
+namespace {
+
+/// Two knobs: samples, whose noise falls as 1 over them and whose time grows with them, and rays of the light, whose
+/// error is added. Runs take time from a clock of the model's own.
+struct Model {
+  double clock = 0.0, budget = 0.0;
+  std::size_t runs = 0;
+  std::size_t end_after = 1'000'000; ///< runs, after which the user stops it
+
+  static double value_of(const MeasuredRun& run, const std::string& key, double otherwise) {
+    for (const std::string& text : run.setting.overrides)
+      if (text.rfind(key + "=", 0) == 0) return std::stod(text.substr(key.size() + 1));
+    return otherwise;
+  }
+  static double seconds(double spp, double rays) { return 0.2 + 0.01 * spp + 0.002 * rays; }
+  static double error(double spp, double rays) { return 0.1 / spp + 1.0 / rays; }
+
+  bool measure(MeasuredRun& run, double most) {
+    if (++runs > end_after) return false;
+    const double spp = value_of(run, "a.spp", 32), rays = value_of(run, "b.rays", 512);
+    const double took = seconds(spp, rays);
+    if (took > most) {
+      clock += most;
+      if (run.repeats.empty()) run.refused = "too long";
+      return true;
+    }
+    clock += took;
+    run.repeats.push_back(took * (run.repeats.size() % 2 == 0 ? 1.0 : 1.3)); // not steady
+    run.seconds = estimate_of_repeats(run.repeats);
+    const double e = error(spp, rays);
+    run.error = {e, 0.95 * e, 1.05 * e};
+    return true;
+  }
+  SearchWorld world() {
+    return {[this](MeasuredRun& run, double most) { return measure(run, most); }, [this] { return budget - clock; }};
+  }
+};
+
+std::vector<Knob> knobs() {
+  Knob spp{"spp", "a.spp", true, "Noise falls.", {}}, rays{"rays", "b.rays", true, "Noise falls.", {}};
+  for (const int n : {2, 8, 32, 128})
+    spp.values.push_back({std::to_string(n), {"a.spp=" + std::to_string(n)}, n == 32});
+  for (const int n : {32, 128, 512, 2048})
+    rays.values.push_back({std::to_string(n), {"b.rays=" + std::to_string(n)}, n == 512});
+  return {spp, rays};
+}
+
+Trade searched(double budget, Model& model) {
+  model.budget = budget;
+  Trade trade;
+  search(trade, knobs(), model.world());
+  return trade;
+}
+
+/// Of all 16 combinations.
+std::vector<std::pair<double, double>> true_front() {
+  Trade all;
+  for (const int spp : {2, 8, 32, 128})
+    for (const int rays : {32, 128, 512, 2048}) {
+      MeasuredRun run;
+      run.seconds.value = Model::seconds(spp, rays);
+      run.error.value = Model::error(spp, rays);
+      all.runs.push_back(run);
+    }
+  std::vector<std::pair<double, double>> front;
+  for (const std::size_t i : mark_front(all))
+    front.emplace_back(all.runs[i].seconds.value, all.runs[i].error.value);
+  return front;
+}
+
+} // namespace
+
+TEST_CASE("with time enough the search finds the front of all combinations") {
+  Model model;
+  Trade trade = searched(1000.0, model);
+  // By the model's own times, which repeats scatter around.
+  for (MeasuredRun& run : trade.runs)
+    run.seconds.value = Model::seconds(Model::value_of(run, "a.spp", 32), Model::value_of(run, "b.rays", 512));
+  std::vector<std::pair<double, double>> front;
+  for (const std::size_t i : mark_front(trade))
+    front.emplace_back(trade.runs[i].seconds.value, trade.runs[i].error.value);
+  CHECK(front == true_front());
+  REQUIRE(trade.knobs.size() == 2);
+  CHECK(trade.knobs[0].runs == std::vector<std::string>{"spp-2", "spp-8", "own", "spp-128"});
+  CHECK(trade.knobs[0].finding == "falls");
+  std::set<std::string> names;
+  for (const MeasuredRun& run : trade.runs) {
+    CHECK(names.insert(run.name).second);
+    CHECK(is_settled(run, {}));
+  }
+}
+
+TEST_CASE("the search keeps to its budget and uses it") {
+  for (const double budget : {2.0, 5.0, 10.0, 20.0, 40.0}) {
+    INFO(budget);
+    Model model;
+    const Trade trade = searched(budget, model);
+    CHECK(model.clock <= 1.1 * budget);
+    CHECK(!trade.runs.empty());
+    CHECK(trade.runs.front().name == own_name);
+    if (budget <= 20.0) CHECK(model.clock > 0.5 * budget);
+  }
+}
+
+TEST_CASE("the search is the same each time") {
+  Model a, b;
+  CHECK(json_of(searched(15.0, a)) == json_of(searched(15.0, b)));
+}
+
+TEST_CASE("a search that was ended keeps what it has, and goes on") {
+  Model ended;
+  ended.end_after = 5;
+  ended.budget = 1000.0;
+  Trade trade;
+  CHECK_FALSE(search(trade, knobs(), ended.world()));
+  CHECK(trade.runs.size() >= 3);
+  for (const MeasuredRun& run : trade.runs)
+    CHECK_FALSE(run.repeats.empty());
+  const std::vector<MeasuredRun> before = trade.runs;
+
+  Model on;
+  on.budget = 1000.0;
+  CHECK(search(trade, knobs(), on.world()));
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    CHECK(trade.runs[i].name == before[i].name);
+    CHECK(trade.runs[i].repeats.size() >= before[i].repeats.size());
+  }
+  const std::size_t runs = trade.runs.size();
+  Model idle;
+  idle.budget = 1000.0;
+  CHECK(search(trade, knobs(), idle.world()));
+  CHECK(trade.runs.size() == runs);
+  CHECK(idle.runs == 0); // all are settled
+}
+
+TEST_CASE("a curve that rises is told, against theory or not") {
+  Trade trade;
+  for (const double error : {1.0, 0.5, 0.8}) {
+    MeasuredRun run;
+    run.name = "k-" + std::to_string(trade.runs.size());
+    run.repeats = {1.0};
+    run.error = {error, 0.95 * error, 1.05 * error};
+    trade.runs.push_back(run);
+  }
+  Knob knob{"k", "a.k", true, "It falls.", {}};
+  const KnobCurve curve{"k", {"k-0", "k-1", "k-2"}, true, {}};
+  CHECK(finding_of(trade, knob, curve, {}) == "the error rises from k-1 to k-2, against theory. It falls.");
+  trade.runs[2].error = {0.5, 0.4, 0.6};
+  CHECK(finding_of(trade, knob, curve, {"9"}) == "falls; not measured, the budget being too small: 9");
+  trade.runs[0].error = trade.runs[1].error;
+  CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("stays the same"));
+}
+
+TEST_CASE("repeats are summed up by their median and range") {
+  CHECK(estimate_of_repeats({}).value == 0.0);
+  const Estimate e = estimate_of_repeats({3.0, 1.0, 2.0, 10.0});
+  CHECK(e.value == 2.5);
+  CHECK(e.low == 1.0);
+  CHECK(e.high == 10.0);
+}
