@@ -2,10 +2,11 @@
 // Axes and marks of charts, as SVG text. Written out because the page has to work without a network, and the chart
 // libraries that systems package would each put more text into it than all of this.
 
-/// value -> place on a logarithmic axis
+/// value -> place on a logarithmic axis; what lies beyond an end, or below zero, stands at the end
 function logScale(low, high, from, to) {
   const a = Math.log(low), b = Math.log(high);
-  return value => from + (Math.log(value) - a) / (b - a) * (to - from);
+  const share = value => value > 0 ? Math.min(1, Math.max(0, (Math.log(value) - a) / (b - a))) : 0;
+  return value => from + share(value) * (to - from);
 }
 
 /// At most `most` round values between low and high, at least two where there is room for them.
@@ -44,7 +45,7 @@ function logDomain(values, room) {
   return [Math.min(...positive) / room, Math.max(...positive) * room];
 }
 
-/// The lower end of the errors that can be drawn: what lies below it, or below zero, is drawn there with an arrow.
+/// Ends of an axis of errors. What lies below them, or below zero, is drawn at the lower end with an arrow.
 function errorDomain(shown, room) {
   const values = shown.flatMap(run => [run.error.high, isTold(run.error) && run.error.low > 0 ? run.error.value : 0,
     Math.max(run.error.low, run.error.value / 10)]);
@@ -73,11 +74,9 @@ function mark(index, x, y, size) {
 }
 
 /// The bar of an estimate along y, with an arrow down where its low end is below what the axis shows.
-function errorBar(x, y, floor, error) {
-  const high = Math.min(floor, y(Math.max(error.high, 1e-300)));
-  const falls = !(error.low > 0) || y(error.low) > floor;
-  const low = falls ? floor : y(error.low);
-  const foot = falls ? `M${r(x - 4)} ${r(low - 7)}L${r(x)} ${r(low)}L${r(x + 4)} ${r(low - 7)}` : `M${r(x - 3)} ${r(low)}h6`;
+function errorBar(x, y, domain, error) {
+  const high = y(error.high), low = y(error.low);
+  const foot = error.low < domain[0] ? `M${r(x - 4)} ${r(low - 7)}L${r(x)} ${r(low)}L${r(x + 4)} ${r(low - 7)}` : `M${r(x - 3)} ${r(low)}h6`;
   return `<path class="bar" d="M${r(x - 3)} ${r(high)}h6M${r(x)} ${r(high)}V${r(low)}${foot}"/>`;
 }
 

@@ -2,22 +2,26 @@
 // A curve a knob: error and seconds against its values.
 
 function drawKnobs() {
-  const box = byId("knobs");
+  const box = byId("knobs"), curves = trade.knobs.filter(curve => curve.runs.length), left = trade.knobs.filter(curve => !curve.runs.length);
   if (box.children.length === 0)
-    box.innerHTML = trade.knobs.map(curve => `<article class="knob" data-knob="${esc(curve.knob)}">` +
+    box.innerHTML = curves.map(curve => `<article class="knob" data-knob="${esc(curve.knob)}">` +
       `<h3>${esc(curve.knob)}</h3><div class="plot"></div>` +
-      `<p class="${curve.falls && curve.finding !== "falls" ? "amiss" : ""}">${esc(findingText(curve))}</p></article>`).join("");
+      `<p class="${curve.falls && !fallsAsItShould(curve) ? "amiss" : ""}">${esc(findingText(curve))}</p></article>`).join("");
   [...box.children].forEach((article, i) => {
     const plot = article.querySelector(".plot");
-    plot.innerHTML = knobChart(trade.knobs[i], Math.max(240, plot.clientWidth));
+    plot.innerHTML = knobChart(curves[i], Math.max(240, plot.clientWidth));
     reachable(plot);
   });
-  if (trade.knobs.length === 0) box.innerHTML = "<p>No knob was measured alone.</p>";
+  byId("knobs-left").innerHTML = left.length === 0 ? "" : "<h3>Left out</h3><ul>" +
+    left.map(curve => `<li><code>${esc(curve.knob)}</code>: ${esc(curve.finding)}</li>`).join("") + "</ul>";
 }
 
+const fallsAsItShould = curve => /^falls\b/.test(curve.finding);
+
 function findingText(curve) {
-  if (curve.finding === "falls") return "The error falls along the values, as theory says.";
-  return curve.finding ? curve.finding[0].toUpperCase() + curve.finding.slice(1).replace(/([^.])$/, "$1.") : "";
+  if (curve.falls && curve.finding === "falls") return "The error falls along the values, as theory says.";
+  const words = curve.finding.replace(/^falls\b/, "the error falls along the values");
+  return words && words[0].toUpperCase() + words.slice(1).replace(/([^.])$/, "$1.");
 }
 
 function knobChart(curve, width) {
@@ -28,26 +32,25 @@ function knobChart(curve, width) {
   const widest = Math.max(...all.map(run => value(run).length)) * 6.6;
   const slanted = widest > step - 4, foot = slanted ? 14 + widest * 0.64 : 18;
   const x = i => left + step * (i + 0.5);
-  const numbers = all.every(run => isFinite(Number(value(run))));
+  const numbers = all.every(run => isFinite(Number(run.setting.value))); // the scene’s own has no text;
   const high = 105, gap = 20;
   let out = "";
-  const panel = (top, title, domain, estimate, toFloor) => {
+  const panel = (top, title, domain, estimate) => {
     const bottom = top + high, y = logScale(domain[0], domain[1], bottom, top);
-    const at = figures => figures.value > 0 ? Math.min(bottom, y(figures.value)) : bottom;
     for (const tick of logTicks(domain[0], domain[1], 4))
       out += line(left, y(tick), width - 8, y(tick), "grid") + text(left - 6, y(tick) + 4, tickText(tick), "tick", "end");
     out += line(left, bottom, width - 8, bottom, "axis") + text(left, top - 5, title, "tick");
-    const points = all.map((run, i) => run.refused ? null : [x(i), at(estimate(run))]);
+    const points = all.map((run, i) => run.refused ? null : [x(i), y(estimate(run).value)]);
     if (numbers) out += `<path class="curve" style="--c:var(--soft)" d="${polyline(points)}"/>`;
     all.forEach((run, i) => {
       if (run.refused) out += `<g>${text(x(i), bottom - 4, "×", "label", "middle")}<title>refused: ${esc(run.refused)}</title></g>`;
-      else out += runMark(run, x(i), points[i][1], 4.5, errorBar(x(i), y, bottom, estimate(run)), toFloor ? "" : "twin");
+      else out += runMark(run, x(i), points[i][1], 4.5, errorBar(x(i), y, domain, estimate(run)), "");
     });
     return bottom;
   };
-  const middle = panel(18, "error (relMSE)", errorDomain(done, 1.4), run => run.error, true);
+  const middle = panel(18, "error (relMSE)", errorDomain(done, 1.4), run => run.error);
   const times = logDomain(done.flatMap(run => [run.seconds.low, run.seconds.high]), 1.4);
-  const bottom = panel(middle + gap + 8, "seconds", times, run => run.seconds, false);
+  const bottom = panel(middle + gap + 8, "seconds", times, run => run.seconds);
   all.forEach((run, i) => {
     const turn = slanted ? ` transform="rotate(-40 ${r(x(i))} ${r(bottom + 14)})"` : "";
     out += `<text x="${r(x(i) + (slanted ? 4 : 0))}" y="${r(bottom + 14)}" class="tick" text-anchor="${slanted ? "end" : "middle"}"${turn}>` +

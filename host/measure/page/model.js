@@ -1,7 +1,8 @@
 "use strict";
 // The measurement, how its figures are written, and which run answers which wish.
 
-const embedded = id => JSON.parse(document.getElementById(id).textContent);
+// What is not finite is null in trade.json: an error that no number holds.
+const embedded = id => JSON.parse(document.getElementById(id).textContent, (key, value) => value === null ? Infinity : value);
 const trade = embedded("trade"), commands = embedded("commands"), pictures = embedded("embedded");
 const reference = trade.reference;
 const runs = trade.runs, measured = runs.filter(run => !run.refused);
@@ -18,32 +19,30 @@ const esc = text => String(text).replace(/[&<>"']/g, c => `&#${c.charCodeAt(0)};
 
 /// Three digits of a figure.
 function figure(value) {
-  if (value === null || !isFinite(value)) return "unknown";
+  if (!isFinite(value)) return "unknown";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  return size >= 1e-3 && size < 1e5 ? String(Number(value.toPrecision(3))) : value.toExponential(2);
+  if (size >= 1e3 && size < 1e6) return String(Math.round(value));
+  return size >= 1e-3 && size < 1e3 ? value.toPrecision(3) : value.toExponential(2).replace("e+", "e");
 }
+const percent = share => `${figure(100 * share)} %`;
+const similarity = ssim => isFinite(ssim) ? ssim.toFixed(4) : "unknown";
 const seconds = value => `${figure(value)} s`;
 const bytes = value => value >= 1e9 ? `${figure(value / 1e9)} GB` : `${figure(value / 1e6)} MB`;
 
 /// An error may be less than the reference can tell: then only its upper end is known.
 const isTold = error => error.value > 0;
 const errorText = error => isTold(error) ? figure(error.value) : `below ${figure(error.high)}`;
-const errorRange = error => error.low > 0 ? `${figure(error.low)} to ${figure(error.high)}` : `up to ${figure(error.high)}`;
+const errorRange = error => !isTold(error) ? "" : error.low > 0 ? `${figure(error.low)} to ${figure(error.high)}` : `up to ${figure(error.high)}`;
+const errorWithRange = error => errorText(error) + (isTold(error) ? ` (${errorRange(error)})` : "");
 const secondsRange = time => `${figure(time.low)} to ${figure(time.high)}`;
 const settingsText = run => run.setting.overrides.length ? run.setting.overrides.join("  ") : "the scene’s own setting";
 const mapText = run => run.cold ? "made anew" : "kept from before";
 
 /// The same choice as fastest_within_error and most_accurate_within of host/measure/trade.h; undefined: no run.
-function fastestWithinError(error) {
-  return best(measured.filter(run => run.error.value <= error), run => run.seconds.value, run => run.error.value);
-}
-function mostAccurateWithin(limit) {
-  return best(measured.filter(run => run.seconds.value <= limit), run => run.error.value, run => run.seconds.value);
-}
-function best(candidates, first, second) {
-  return [...candidates].sort((a, b) => first(a) - first(b) || second(a) - second(b))[0];
-}
+const fastestWithinError = error => least(measured.filter(run => run.error.value <= error), run => run.seconds.value);
+const mostAccurateWithin = limit => least(measured.filter(run => run.seconds.value <= limit), run => run.error.value);
+const least = (candidates, by) => [...candidates].sort((a, b) => by(a) - by(b))[0];
 
 /// Methods and stages have colours by their places in these lists; methods have marks, too, for who sees no colours.
 const methods = [...new Set(runs.map(run => run.setting.method))].sort();

@@ -7,17 +7,18 @@ function drawHead() {
   document.title = `Speed against accuracy: ${name}`;
   const noise = reference.own_noise > 0 ? `; its own noise, ${figure(reference.own_noise)}, is taken off every error` : "";
   const facts = [
-    ["Scene", trade.scene], ["Device", trade.device], ["Date", `${trade.date}, pointgi ${trade.version}`],
+    ["Scene", [trade.scene, ...(trade.overrides || [])].join("  ")], ["Device", trade.device], ["Date", `${trade.date}, pointgi ${trade.version}`],
     ["Picture", `${trade.width} x ${trade.height} pixels`],
     ["Reference", `${reference.source}${reference.seconds > 0 ? `, ${seconds(reference.seconds)}` : ""}${noise}`],
     ["Budget", `${seconds(trade.budget_seconds)}, of which ${seconds(trade.spent_seconds)} were spent on ${runs.length} runs`],
   ];
   byId("facts").innerHTML = facts.map(([title, words]) => `<div><dt>${title}</dt><dd>${esc(words)}</dd></div>`).join("");
   const terms = [
-    ["seconds", "From the prepared cloud to the picture, by a process that has its kernels: the median of the repetitions, below it the interval. " +
-      "At another picture size only the stage render changes, with the number of pixels."],
-    ["error (relMSE)", "Mean over the pixels of the squared difference from the reference, relative to the reference squared. Half the relMSE " +
-      "is 0.7 times the difference. The noise of the reference is taken off, so that an interval may reach below 0: the reference cannot tell such an error from none."],
+    ["seconds", "From the prepared cloud to the picture, by a process that has its kernels: the median of the repetitions, below it the least and the greatest. " +
+      "The stage render grows with the pixels of the picture; the others do not depend on them."],
+    ["error (relMSE)", "As pointgi compare prints it: the mean over the pixels of the squared difference from the reference, relative to the squared reference. A quarter " +
+      "of the error is half the difference. The noise of the reference is taken off, so that an interval may reach below 0: the reference cannot tell such an error from none. " +
+      "The interval holds the error in 95 of 100 measurements."],
     ["bias", "Difference of the mean of the picture from the mean of the reference, relative."],
     ["SSIM", "Structural similarity with the reference; 1 is the same."],
     ["map", "Whether the visibility map was made anew in the run or kept from an earlier one. Hollow marks are of kept maps."],

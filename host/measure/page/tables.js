@@ -2,8 +2,8 @@
 // The settings on the line, their stages, and all runs.
 
 const cell = (main, range) => `<td class="figure">${main}${range ? `<small>${range}</small>` : ""}</td>`;
-const nameCell = run => `<td><a class="pick" href="#compare" data-pick="${esc(run.name)}">${esc(run.name)}</a></td>`;
-const methodCell = run => `<td><span class="dot" style="--c:${methodColour(run)}"></span>${esc(run.setting.method)}</td>`;
+const nameCell = run => `<td class="name"><a class="pick" href="#compare" data-pick="${esc(run.name)}">${esc(run.name)}</a></td>`;
+const methodCell = run => `<td class="name"><span class="dot" style="--c:${methodColour(run)}"></span>${esc(run.setting.method)}</td>`;
 const dataOf = run => `data-run="${esc(run.name)}" data-seconds="${run.seconds.value}" data-error="${run.error.value}"`;
 
 function drawBest() {
@@ -11,7 +11,7 @@ function drawBest() {
     "<th class='figure'>SSIM</th><th class='figure'>memory</th><th>settings</th></tr></thead><tbody>" +
     front.map((run, i) => `<tr ${dataOf(run)}><td class="figure">${i + 1}</td>${nameCell(run)}` +
       cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
-      cell(figure(run.ssim)) + cell(bytes(run.memory_bytes)) +
+      cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) +
       `<td class="settings">${run.cold ? "" : "visibility map kept; "}<code>${esc(settingsText(run))}</code></td></tr>`).join("") + "</tbody>";
 }
 
@@ -61,9 +61,9 @@ function drawAll() {
     `${name === key ? ` aria-sort="${down ? "descending" : "ascending"}"` : ""}><button type="button" data-sort="${name}">${title}</button></th>`);
   const row = run => `<tr ${dataOf(run)} class="${run.name === state.select ? "selected" : ""}">${nameCell(run)}${methodCell(run)}` +
     cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
-    cell(figure(run.bias)) + cell(figure(run.ssim)) + cell(bytes(run.memory_bytes)) + `<td>${run.cold ? "anew" : "kept"}</td>` +
+    cell(percent(run.bias)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) + `<td>${run.cold ? "anew" : "kept"}</td>` +
     `<td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
-  const refused = run => `<tr data-refused="${esc(run.name)}"><td>${esc(run.name)}</td>${methodCell(run)}` +
+  const refused = run => `<tr data-refused="${esc(run.name)}"><td class="name">${esc(run.name)}</td>${methodCell(run)}` +
     `<td colspan="6">not run: ${esc(run.refused)}</td><td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
   const focused = document.activeElement && document.activeElement.dataset.sort;
   byId("all").innerHTML = `<thead><tr>${head.join("")}</tr></thead><tbody>${sorted.map(row).join("")}` +

@@ -10,7 +10,8 @@ function drawWant() {
     const field = byId(`want-${key}`), card = byId(`for-${key}`);
     const given = state[key] || (own ? figure(own[key].value) : "");
     if (document.activeElement !== field) field.value = given;
-    const limit = Number(given.trim().replace(",", "."));
+    // The figure in the field is rounded, the scene's own is not.
+    const limit = state[key] || !own ? Number(given.trim().replace(",", ".")) : own[key].value;
     const run = limit > 0 ? choose(limit) : undefined;
     card.dataset.want = key;
     card.dataset.run = run ? run.name : "";
@@ -22,11 +23,14 @@ function recommendation(run, key, limit) {
   const doubt = run[key].high > limit
     ? ` Its interval reaches ${figure(run[key].high)}${key === "seconds" ? " s" : ""}, which is more than you asked for.` : "";
   const kept = run.cold ? "" : " The visibility map was kept from an earlier run; a first run takes longer.";
-  return `<p>${pick(run)}: ${seconds(run.seconds.value)}, error ${errorText(run.error)} (${errorRange(run.error)}), ` +
+  return `<p>${pick(run)}: ${seconds(run.seconds.value)}, error ${errorWithRange(run.error)}, ` +
     `${bytes(run.memory_bytes)}.${doubt}${kept}</p>` +
-    `<div class="command"><code>${esc(commands[run.name] || "")}</code>` +
+    `<div class="command"><code>${unbroken(commands[run.name] || "")}</code>` +
     `<button type="button" data-copy="${esc(commands[run.name] || "")}">Copy</button></div>`;
 }
+
+/// A command whose words do not break at their hyphens.
+const unbroken = command => command.split(" ").map(word => `<span>${esc(word)}</span>`).join(" ");
 
 const pick = run => `<a class="pick" href="#compare" data-pick="${esc(run.name)}"><strong>${esc(run.name)}</strong></a>`;
 
@@ -50,7 +54,7 @@ function sentences() {
   }
   const better = fastestWithinError(own.error.value / 2);
   list.push(["half-error", better, better
-    ? `For half the error: ${pick(better)} takes ${timeAgainstOwn(better)}, and has an error of ${errorText(better.error)}.`
+    ? `For half the error: ${pick(better)} takes ${timeAgainstOwn(better)}; ${errorAgainstOwn(better)}`
     : "For half the error: no measured run is so accurate."]);
   const same = fastestWithinError(own.error.value);
   if (same && same !== own && same !== better)
@@ -59,9 +63,8 @@ function sentences() {
 }
 
 function errorAgainstOwn(run) {
-  if (!isTold(run.error) || !isTold(own.error)) return `its error is ${errorText(run.error)}.`;
-  const ratio = run.error.value / own.error.value;
-  return `its error is ${errorText(run.error)}, ` + (ratio < 1 ? `which is less (${figure(ratio)} times).` : `${figure(ratio)} times the scene’s own.`);
+  const ratio = isTold(run.error) && isTold(own.error) ? `, ${figure(run.error.value / own.error.value)} times the scene’s own` : "";
+  return `its error is ${errorText(run.error)}${ratio}.`;
 }
 
 function timeAgainstOwn(run) {
