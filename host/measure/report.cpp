@@ -22,7 +22,8 @@ std::string base64(const std::string& bytes) {
     std::uint32_t bits = 0;
     for (std::size_t k = 0; k < 3; ++k)
       bits = bits << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[(bits >> (18 - 6 * k)) & 63] : '=';
+    for (std::size_t k = 0; k < 4; ++k)
+      text += k <= count ? digits[(bits >> (18 - 6 * k)) & 63] : '=';
   }
   return text;
 }
