@@ -54,6 +54,19 @@ struct ProfileOptions {
   bool quiet = false;
 };
 
+struct MeasureCommand {
+  std::string input;  ///< scene.toml or cloud
+  std::string output; ///< folder for trade.json, trade.csv and pictures
+  double budget = 300.0;
+  std::string knobs; ///< names, separated by commas; empty: all
+  std::optional<double> target;
+  std::string reference; ///< .exr; empty: path traced
+  std::string size;      ///< "WxH"; empty: chosen
+  std::string device;
+  std::vector<std::string> overrides; ///< key.path=value
+  bool quiet = false;
+};
+
 struct CompareOptions {
   std::string first, second; ///< .exr
   bool json = false;
@@ -62,6 +75,7 @@ struct CompareOptions {
 ExitCode run_render(const RenderOptions& options);
 ExitCode run_bake(const BakeOptions& options);
 ExitCode run_profile(const ProfileOptions& options);
+ExitCode run_measure(const MeasureCommand& command);
 ExitCode run_compare(const CompareOptions& options);
 ExitCode run_info(const std::string& file);
 ExitCode run_devices(bool json, bool check, const std::string& device);

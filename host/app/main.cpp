@@ -127,6 +127,28 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
   command.add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
 }
 
+void add_measure_options(CLI::App& command, MeasureCommand& measure, Common& common) {
+  command.add_option("SCENE.toml|CLOUD.ply", measure.input, "what to measure on")->required();
+  command
+      .add_option("-o,--output", measure.output,
+                  "folder for trade.json, trade.csv and pictures; what it holds of the same scene is gone on with")
+      ->required();
+  command.add_option("--budget", measure.budget, "seconds for all, a third of them for the reference (default 300)")
+      ->check(CLI::Range(1.0, 1e6));
+  command.add_option("--knobs", measure.knobs,
+                     "only these, separated by commas: keys of the scene file, or their last parts "
+                     "(render.spp,directions); default: all that the scene needs");
+  command.add_option("--target", measure.target, "print the fastest setting whose relMSE is at most this");
+  command.add_option("--reference", measure.reference,
+                     "compare with this picture, REFERENCE.exr, instead of a path-traced one");
+  command.add_option("--size", measure.size,
+                     "image size, WIDTHxHEIGHT (default: the reference's, or 160 to 320 pixels for the longest side)");
+  add_device_options(command, measure.device, common);
+  command.add_option("--set", measure.overrides, "a value of the scene file, as for render; may repeat")
+      ->take_all()
+      ->expected(1);
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Global illumination of point clouds, without meshing them."};
   app.set_version_flag("--version", "pointgi " POINTGI_VERSION);
@@ -193,6 +215,11 @@ int run(int argc, char** argv) {
                  "of these programs only some, in which every two options of a kernel file meet that meet in any")
       ->needs(write_programs);
 
+  MeasureCommand measure;
+  CLI::App* measure_command =
+      app.add_subcommand("measure", "measure what time buys: error against seconds of a scene's settings");
+  add_measure_options(*measure_command, measure, common);
+
   std::string info_file;
   CLI::App* info_command = app.add_subcommand("info", "what is in a cloud or scene");
   info_command->add_option("FILE.ply|SCENE.toml", info_file, "what to look at")->required();
@@ -235,6 +262,9 @@ int run(int argc, char** argv) {
   profile.device = environment_or(profile.device, "POINTGI_DEVICE");
   profile.quiet = render.quiet;
   if (profile_command->parsed()) return code_of(run_profile(profile));
+  measure.device = environment_or(measure.device, "POINTGI_DEVICE");
+  measure.quiet = render.quiet;
+  if (measure_command->parsed()) return code_of(run_measure(measure));
   if (compare_command->parsed()) return code_of(run_compare(compare));
   if (info_command->parsed()) return code_of(run_info(info_file));
   return code_of(run_devices(json, check, environment_or(checked_device, "POINTGI_DEVICE")));

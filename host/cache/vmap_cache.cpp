@@ -114,8 +114,22 @@ std::string vmap_key(const ClusterTree& tree, View<Splat> splats, const LinkOpti
   return text + answered_by;
 }
 
+namespace {
+
+thread_local int not_kept = 0; ///< NoVMapsKept that live
+
+} // namespace
+
+NoVMapsKept::NoVMapsKept() {
+  ++not_kept;
+}
+
+NoVMapsKept::~NoVMapsKept() {
+  --not_kept;
+}
+
 std::string vmap_file(const std::string& key) {
-  const std::string folder = cache_folder();
+  const std::string folder = not_kept > 0 ? std::string() : cache_folder();
   if (folder.empty()) return {};
   char name[40];
   std::snprintf(name, sizeof name, "/%016llx.vmap", static_cast<unsigned long long>(fnv1a(key)));

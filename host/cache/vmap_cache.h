@@ -14,6 +14,16 @@ std::string vmap_key(const ClusterTree& tree, View<Splat> splats, const LinkOpti
 /// Where the V-map of this key is kept: below cache_folder() (host/cache/binary_cache.h); empty when nothing is kept.
 std::string vmap_file(const std::string& key);
 
+/// While one lives, this thread neither keeps V-maps nor takes those that are kept: what is measured is then the making
+/// of one.
+class NoVMapsKept {
+public:
+  NoVMapsKept();
+  ~NoVMapsKept();
+  NoVMapsKept(const NoVMapsKept&) = delete;
+  NoVMapsKept& operator=(const NoVMapsKept&) = delete;
+};
+
 struct KeptVMap {
   std::optional<VMap> map;
   std::string warning; ///< why a file that is there was not used; empty when there is none

@@ -134,6 +134,8 @@ public:
   /// Given as source to a driver that keeps compiled kernels itself; whether it compiled them again only it knows.
   std::size_t programs_kept_by_driver() const { return kept_by_driver_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
+  /// From now on peak_bytes() is of what is there now and comes later.
+  void forget_peak() { bytes_->peak = bytes_->now; }
   /// What the device may still have for what is kept on it. Half of it where its memory is the host's.
   std::uint64_t bytes_left() const {
     const std::uint64_t left = info_.memory_bytes - std::min<std::uint64_t>(info_.memory_bytes, bytes_->now);

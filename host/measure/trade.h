@@ -28,7 +28,7 @@ struct MeasuredRun {
   Setting setting;
   bool cold = true;
   std::vector<double> repeats;          ///< seconds of each repetition, from the prepared cloud to the picture
-  Estimate seconds;                     ///< median of `repeats`, and their spread
+  Estimate seconds;                     ///< median of `repeats`, the least and the greatest of them
   std::map<std::string, double> stages; ///< seconds of each stage, of the median repetition
   std::uint64_t memory_bytes = 0;       ///< device_peak_bytes of the run
   Estimate error;                       ///< relMSE against the reference, whose own noise is taken off; low may be < 0
@@ -44,7 +44,7 @@ struct KnobCurve {
   std::string knob;
   std::vector<std::string> runs; ///< names, in the order of the values
   bool falls = false;            ///< theory says that the error falls along them
-  std::string finding;           ///< "falls", or where it does not and why, for the reader
+  std::string finding;           ///< "falls", or where it does not and why, for the reader; without runs, why not
 };
 
 struct TradeReference {
@@ -56,6 +56,8 @@ struct TradeReference {
 
 struct Trade {
   std::string version, scene, device, date; ///< date: YYYY-MM-DD
+  std::vector<std::string> overrides;       ///< that all runs have besides their own, as --set takes them
+  std::string state;                        ///< hash of the files of the scene, by which a resumed one is known
   int width = 0, height = 0;
   double budget_seconds = 0.0, spent_seconds = 0.0;
   TradeReference reference;
@@ -74,8 +76,9 @@ std::optional<std::size_t> most_accurate_within(const Trade& trade, double secon
 /// The command that makes the run's picture again: pointgi render SCENE --set ...
 std::string command_of(const Trade& trade, const MeasuredRun& run);
 
-/// trade.json and back; trade.csv has a line a run. read_trade throws Error(input) that names the file and what is
-/// wrong in it.
+/// trade.json, whose keys are the members' names, and back; trade.csv has a line a run, after one with the names of the
+/// columns. What is not finite is null there. read_trade throws Error(input) that names the file and what is wrong in
+/// it.
 std::string json_of(const Trade& trade);
 Trade read_trade(const std::string& path);
 std::string csv_of(const Trade& trade);

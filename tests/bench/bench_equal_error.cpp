@@ -6,7 +6,7 @@
 #include "host/render/render.h"
 #include "host/stages/light_stages.h"
 #include "host/stages/prepared_scene.h"
-#include "tests/bench/reference_halves.h"
+#include "host/measure/reference.h"
 #include "tests/support/cache_folder.h"
 #include <CLI/CLI.hpp>
 #include <cmath>

@@ -1,0 +1,311 @@
+#include "host/measure/measure.h"
+#include "host/cache/binary_cache.h"
+#include "host/image/exposure.h"
+#include "host/image/png_writer.h"
+#include "host/measure/make_reference.h"
+#include "host/measure/search.h"
+#include "host/run.h"
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+namespace pointgi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the budget. What is begun is stopped before the end is later than that.
+constexpr double reference_share = 1.0 / 3.0, latest_end = 1.05;
+
+/// What is found is kept at least this often [s].
+constexpr double save_interval = 5.0;
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  char text[16];
+  std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
+  return text;
+}
+
+void write_png(const Picture& picture, const std::string& path, double stops) {
+  PngWriter writer(path, picture.width, picture.height);
+  const auto scale = static_cast<float>(std::exp2(stops));
+  const auto columns = static_cast<std::size_t>(picture.width);
+  std::vector<std::uint8_t> row(3 * columns);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(picture.height); ++y) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] = display_byte(picture.channels.at(Reference::colours[i % 3])[y * columns + i / 3], scale);
+    writer.write_row(row.data());
+  }
+  writer.close();
+  writer.commit();
+}
+
+/// One exposure for all pictures, so that they can be compared by eye.
+double exposure_for(const RenderSettings& render, const Picture& picture) {
+  if (!render.auto_exposure) return render.exposure;
+  ExposureMeter meter;
+  const auto at = [&](const char* name, std::size_t i) {
+    const auto channel = picture.channels.find(name);
+    return channel == picture.channels.end() ? 0.0f : channel->second[i];
+  };
+  for (std::size_t i = 0; i < picture.channels.at("R").size(); ++i)
+    meter.add({at("R", i), at("G", i), at("B", i)}, at("A", i),
+              {at("Albedo.R", i), at("Albedo.G", i), at("Albedo.B", i)});
+  return meter.stops();
+}
+
+/// The mean of what is known of `count` pictures and of one more.
+void add_to_mean(double& mean, double one, std::size_t count) {
+  mean += (one - mean) / static_cast<double>(count + 1);
+}
+
+class Measurement {
+public:
+  Measurement(const api::Context& context, const MeasureOptions& options, const RunControl& run,
+              const std::function<void(const Trade&)>& save)
+      : options_(options), run_(run), save_(save),
+        maker_(context, options.scene, options.overrides), inner_{[this] { return stop_now(); },
+                                                                  [this](const StageProgress&) { tell_progress(); },
+                                                                  {}} {
+    trade_.version = POINTGI_VERSION;
+    trade_.scene = options.scene;
+    trade_.device = context.device();
+    trade_.overrides = options.overrides;
+    trade_.state = state_of(options);
+    trade_.date = today();
+    trade_.budget_seconds = options.budget;
+  }
+
+  Measured measure() {
+    if (run_.progress) run_.progress({"measure", std::nullopt, {}});
+    take_over_earlier();
+    const bool resumed = !trade_.runs.empty();
+    find_reference();
+    const Reference reference = made_.reference();
+    reference_ = &reference;
+    trade_.reference.own_noise = reference.own_noise();
+    exposure_ = exposure_for(maker_.scene(inner_).render, made_.shown);
+    trade_.reference.picture = std::string(pictures_name) + "/reference.png";
+    write_png(reference.mean(), path_of(trade_.reference.picture), exposure_);
+    bool whole = true;
+    if (!resumed) whole = first_run();
+    if (whole) whole = search(trade_, knobs(), world());
+    if (trade_.runs.empty()) throw Error(ErrorKind::interrupted, "interrupted before a picture was measured");
+    mark_front(trade_);
+    save();
+    return {std::move(trade_), !whole};
+  }
+
+private:
+  double elapsed() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.begun).count();
+  }
+  double left() const { return options_.budget - elapsed(); }
+  bool user_stops() const { return run_.stop && run_.stop(); }
+  bool stop_now() const { return user_stops() || elapsed() > stop_at_; }
+
+  void tell_progress() const {
+    if (run_.progress) run_.progress({"measure", std::min(1.0, elapsed() / options_.budget), {}});
+  }
+
+  std::string path_of(const std::string& name) const { return (fs::path(options_.folder) / name).string(); }
+
+  void save() {
+    trade_.spent_seconds = elapsed();
+    save_(trade_);
+    saved_at_ = elapsed();
+  }
+
+  /// Runs of the folder's trade.json, where they are of the same scene, program, device and size.
+  void take_over_earlier() {
+    std::error_code ignored;
+    const std::string path = path_of(trade_json_name);
+    if (!fs::exists(path, ignored)) return;
+    Trade earlier = read_trade(path);
+    const bool same = earlier.version == trade_.version && earlier.scene == trade_.scene &&
+                      earlier.device == trade_.device && earlier.overrides == trade_.overrides &&
+                      earlier.state == trade_.state && !earlier.runs.empty() && earlier.runs.front().name == own_name &&
+                      (!options_.size || *options_.size == std::pair(earlier.width, earlier.height));
+    if (!same) {
+      log_line(run_, "what " + path + " holds is of another scene, device, size or version, and is replaced");
+      return;
+    }
+    std::optional<MadeReference> made;
+    if (options_.reference_file.empty()) {
+      made = kept_reference(options_.folder, earlier.width, earlier.height);
+      if (!made) return;
+      made->source = earlier.reference.source;
+      made->seconds = earlier.reference.seconds;
+      made_ = std::move(*made);
+    }
+    trade_.width = earlier.width;
+    trade_.height = earlier.height;
+    trade_.runs = std::move(earlier.runs);
+    trade_.knobs = std::move(earlier.knobs);
+    log_line(run_, fmt::format("{} runs of {} are taken over", trade_.runs.size(), path));
+  }
+
+  static void log_line(const RunControl& run, const std::string& text) {
+    if (run.log) run.log(LogLevel::info, text);
+  }
+
+  void find_reference() {
+    stop_at_ = latest_end * options_.budget;
+    std::optional<std::pair<int, int>> size = options_.size;
+    if (!options_.reference_file.empty()) {
+      made_ = read_reference(options_.reference_file, size);
+      size = {made_.first.width, made_.first.height};
+    }
+    const RenderSettings& render = maker_.scene(inner_).render;
+    if (trade_.width > 0) size = {trade_.width, trade_.height};
+    if (!size) size = chosen_size(render.width, render.height);
+    maker_.set_size(size->first, size->second);
+    trade_.width = size->first;
+    trade_.height = size->second;
+    if (made_.first.channels.empty()) {
+      const double most = std::min(reference_share * options_.budget, 0.5 * left());
+      stop_at_ = elapsed() + 1.5 * most;
+      made_ = trace_reference(
+          maker_, most, [this] { return elapsed(); }, inner_);
+      if (user_stops()) throw interruption();
+      stop_at_ = latest_end * options_.budget;
+      keep_reference(made_, options_.folder);
+    }
+    trade_.reference.source = made_.source;
+    trade_.reference.seconds = made_.seconds;
+  }
+
+  std::pair<int, int> chosen_size(int width, int height) {
+    const auto [columns, rows] = size_to_measure(width, height, 1e9, 1.0); // the smallest
+    maker_.set_size(columns, rows);
+    maker_.trace(1, 1, inner_); // builds the kernels
+    const double pace = maker_.trace(1, 2, inner_).seconds;
+    return size_to_measure(width, height, pace, reference_share * options_.budget);
+  }
+
+  /// The scene's own setting, which tells what light there is, and so which knobs there are.
+  bool first_run() {
+    MeasuredRun own;
+    own.name = own_name;
+    const bool whole = measure_once(own, left());
+    if (whole && !own.refused.empty())
+      throw Error(ErrorKind::input, options_.scene + ": its own setting gives no picture to measure: " + own.refused +
+                                        "; give more time by --budget, or a cheaper setting by --set");
+    if (whole) trade_.runs.push_back(own);
+    return whole;
+  }
+
+  std::vector<Knob>& knobs() {
+    const std::string& method = trade_.runs.front().setting.method;
+    knobs_ = knobs_of({maker_.scene(inner_), method, maker_.points(inner_)});
+    if (!options_.knobs.empty())
+      knobs_.erase(std::remove_if(knobs_.begin(), knobs_.end(),
+                                  [&](const Knob& knob) {
+                                    return std::find(options_.knobs.begin(), options_.knobs.end(), knob.name) ==
+                                           options_.knobs.end();
+                                  }),
+                   knobs_.end());
+    return knobs_;
+  }
+
+  SearchWorld world() {
+    return {[this](MeasuredRun& run, double most) { return measure_once(run, most); }, [this] { return left(); }};
+  }
+
+  bool measure_once(MeasuredRun& run, double most) {
+    stop_at_ = std::min(elapsed() + std::max(most, 0.0), latest_end * options_.budget);
+    const double begun = elapsed();
+    try {
+      const auto seed = static_cast<unsigned>(run.repeats.size() + 1);
+      MadePicture made = maker_.make(run.setting.overrides, seed, inner_);
+      if (made.compiled) {
+        stop_at_ = std::min(stop_at_ + (elapsed() - begun), latest_end * options_.budget);
+        made = maker_.make(run.setting.overrides, seed, inner_);
+      }
+      add(run, made);
+    } catch (const Error& error) {
+      if (user_stops()) return false;
+      if (!run.repeats.empty()) return true; // what is known of it stays
+      if (error.kind() == ErrorKind::interrupted)
+        run.refused =
+            fmt::format("was stopped after {:.0f} s, which are all that the budget has for it", elapsed() - begun);
+      else
+        run.refused = error.what();
+    }
+    tell_progress();
+    if (elapsed() - saved_at_ > save_interval && !trade_.runs.empty()) save();
+    return true;
+  }
+
+  void add(MeasuredRun& run, const MadePicture& made) {
+    const std::vector<double> errors = reference_->errors(made.picture);
+    const Estimate error = mean_of_pixels(errors, made.picture.width, made.picture.height);
+    if (!std::isfinite(error.value)) {
+      run.refused = "its picture holds values that are not finite";
+      return;
+    }
+    const std::size_t count = run.repeats.size();
+    add_to_mean(run.error.value, error.value, count);
+    add_to_mean(run.error.low, error.low, count);
+    add_to_mean(run.error.high, error.high, count);
+    const Difference off = difference(made.picture, run.name, reference_->mean(), "reference").all;
+    add_to_mean(run.bias, off.bias, count);
+    add_to_mean(run.ssim, off.ssim, count);
+    if (count == 0) {
+      run.setting.method = made.method;
+      run.picture = std::string(pictures_name) + "/" + run.name + ".png";
+      write_png(made.picture, path_of(run.picture), exposure_);
+    }
+    run.repeats.push_back(made.seconds);
+    const double before = run.seconds.value;
+    run.seconds = estimate_of_repeats(run.repeats);
+    // The stages of the repetition nearest to the median.
+    if (count == 0 || std::fabs(made.seconds - run.seconds.value) <= std::fabs(before - run.seconds.value))
+      run.stages = made.stages;
+    run.memory_bytes = std::max(run.memory_bytes, made.memory_bytes);
+  }
+
+  const MeasureOptions& options_;
+  const RunControl& run_;
+  const std::function<void(const Trade&)>& save_;
+  PictureMaker maker_;
+  RunControl inner_; ///< of the pictures: it ends with the time that they have, and says nothing
+  double stop_at_ = 1e300;
+  double saved_at_ = 0.0;
+  double exposure_ = 0.0;
+  Trade trade_;
+  MadeReference made_;
+  const Reference* reference_ = nullptr;
+  std::vector<Knob> knobs_;
+};
+
+} // namespace
+
+Measured measure(const api::Context& context, const MeasureOptions& options, const RunControl& run,
+                 const std::function<void(const Trade&)>& save) {
+  return Measurement(context, options, run, save).measure();
+}
+
+std::string state_of(const MeasureOptions& options) {
+  std::string text;
+  const auto add_file = [&](const std::string& path) {
+    std::error_code failed;
+    const auto size = fs::file_size(path, failed);
+    const auto time = fs::last_write_time(path, failed).time_since_epoch().count();
+    text += fmt::format("{} {} {}\n", path, failed ? 0 : size, failed ? 0 : time);
+  };
+  add_file(options.scene);
+  for (const CloudSettings& cloud :
+       api::Scene::from_file(options.scene, options.overrides).parts()->description().clouds)
+    add_file(cloud.file);
+  if (!options.reference_file.empty()) add_file(options.reference_file);
+  for (const std::string& one : options.overrides)
+    text += one + "\n";
+  return fmt::format("{:016x}", fnv1a(text));
+}
+
+} // namespace pointgi

@@ -1,0 +1,202 @@
+#include "host/error.h"
+#include "host/measure/trade.h"
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace pointgi {
+
+namespace {
+
+using nlohmann::json;
+
+/// JSON has no infinity: null.
+json number(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+json numbers(const std::vector<double>& values) {
+  json list = json::array();
+  for (const double value : values)
+    list.push_back(number(value));
+  return list;
+}
+
+json object_of(const Estimate& e) {
+  return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
+}
+
+json object_of(const MeasuredRun& run) {
+  json stages = json::object();
+  for (const auto& [name, seconds] : run.stages)
+    stages[name] = number(seconds);
+  return {{"name", run.name},
+          {"setting",
+           {{"overrides", run.setting.overrides},
+            {"knob", run.setting.knob},
+            {"value", run.setting.value},
+            {"method", run.setting.method}}},
+          {"cold", run.cold},
+          {"repeats", numbers(run.repeats)},
+          {"seconds", object_of(run.seconds)},
+          {"stages", stages},
+          {"memory_bytes", run.memory_bytes},
+          {"error", object_of(run.error)},
+          {"bias", number(run.bias)},
+          {"ssim", number(run.ssim)},
+          {"picture", run.picture},
+          {"on_front", run.on_front},
+          {"refused", run.refused}};
+}
+
+json object_of(const KnobCurve& knob) {
+  return {{"knob", knob.knob}, {"runs", knob.runs}, {"falls", knob.falls}, {"finding", knob.finding}};
+}
+
+/// A place in the file that is read, by which errors name it: "runs.3.error".
+class Reader {
+public:
+  Reader(const json& value, std::string place) : value_(value), place_(std::move(place)) {}
+
+  Reader operator[](const char* key) const {
+    require(value_.is_object(), "an object");
+    const auto at = value_.find(key);
+    if (at == value_.end()) throw Error(ErrorKind::input, place_ + ": has no \"" + key + "\"");
+    return {*at, place_ + (place_.empty() || place_.back() == ' ' ? "" : ".") + key};
+  }
+
+  std::string text() const {
+    require(value_.is_string(), "a text");
+    return value_.get<std::string>();
+  }
+  bool flag() const {
+    require(value_.is_boolean(), "true or false");
+    return value_.get<bool>();
+  }
+  double number() const {
+    if (value_.is_null()) return std::numeric_limits<double>::infinity();
+    require(value_.is_number(), "a number");
+    return value_.get<double>();
+  }
+  std::uint64_t count() const {
+    require(value_.is_number_unsigned(), "a whole number that is not negative");
+    return value_.get<std::uint64_t>();
+  }
+  int side() const {
+    const std::uint64_t pixels = count();
+    require(pixels >= 1 && pixels <= 65536, "a number of pixels from 1 to 65536");
+    return static_cast<int>(pixels);
+  }
+  Estimate estimate() const { return {(*this)["value"].number(), (*this)["low"].number(), (*this)["high"].number()}; }
+  template <typename Of>
+  auto list(const Of& of) const {
+    require(value_.is_array(), "a list");
+    std::vector<decltype(of(*this))> all;
+    for (std::size_t i = 0; i < value_.size(); ++i)
+      all.push_back(of(Reader(value_[i], place_ + "." + std::to_string(i))));
+    return all;
+  }
+  std::vector<std::string> texts() const {
+    return list([](const Reader& one) { return one.text(); });
+  }
+  std::map<std::string, double> by_name() const {
+    require(value_.is_object(), "an object");
+    std::map<std::string, double> all;
+    for (const auto& [key, value] : value_.items())
+      all[key] = Reader(value, place_ + "." + key).number();
+    return all;
+  }
+
+private:
+  void require(bool right, const char* expected) const {
+    if (!right)
+      throw Error(ErrorKind::input, place_ + ": expected " + expected + ", found " + value_.dump().substr(0, 40));
+  }
+
+  const json& value_;
+  std::string place_;
+};
+
+MeasuredRun run_of(const Reader& in) {
+  const Reader setting = in["setting"];
+  MeasuredRun run;
+  run.name = in["name"].text();
+  run.setting = {setting["overrides"].texts(), setting["knob"].text(), setting["value"].text(),
+                 setting["method"].text()};
+  run.cold = in["cold"].flag();
+  run.repeats = in["repeats"].list([](const Reader& one) { return one.number(); });
+  run.seconds = in["seconds"].estimate();
+  run.stages = in["stages"].by_name();
+  run.memory_bytes = in["memory_bytes"].count();
+  run.error = in["error"].estimate();
+  run.bias = in["bias"].number();
+  run.ssim = in["ssim"].number();
+  run.picture = in["picture"].text();
+  run.on_front = in["on_front"].flag();
+  run.refused = in["refused"].text();
+  return run;
+}
+
+KnobCurve knob_of(const Reader& in) {
+  return {in["knob"].text(), in["runs"].texts(), in["falls"].flag(), in["finding"].text()};
+}
+
+Trade trade_of(const Reader& in) {
+  const Reader reference = in["reference"];
+  Trade trade;
+  trade.version = in["version"].text();
+  trade.scene = in["scene"].text();
+  trade.device = in["device"].text();
+  trade.date = in["date"].text();
+  trade.overrides = in["overrides"].texts();
+  trade.state = in["state"].text();
+  trade.width = in["width"].side();
+  trade.height = in["height"].side();
+  trade.budget_seconds = in["budget_seconds"].number();
+  trade.spent_seconds = in["spent_seconds"].number();
+  trade.reference = {reference["source"].text(), reference["picture"].text(), reference["own_noise"].number(),
+                     reference["seconds"].number()};
+  trade.runs = in["runs"].list(run_of);
+  trade.knobs = in["knobs"].list(knob_of);
+  return trade;
+}
+
+} // namespace
+
+std::string json_of(const Trade& trade) {
+  json out = {{"version", trade.version},
+              {"scene", trade.scene},
+              {"device", trade.device},
+              {"date", trade.date},
+              {"overrides", trade.overrides},
+              {"state", trade.state},
+              {"width", trade.width},
+              {"height", trade.height},
+              {"budget_seconds", number(trade.budget_seconds)},
+              {"spent_seconds", number(trade.spent_seconds)},
+              {"reference",
+               {{"source", trade.reference.source},
+                {"picture", trade.reference.picture},
+                {"own_noise", number(trade.reference.own_noise)},
+                {"seconds", number(trade.reference.seconds)}}},
+              {"runs", json::array()},
+              {"knobs", json::array()}};
+  for (const MeasuredRun& run : trade.runs)
+    out["runs"].push_back(object_of(run));
+  for (const KnobCurve& knob : trade.knobs)
+    out["knobs"].push_back(object_of(knob));
+  // What is no UTF-8, as a name of a file may be, becomes a mark instead of an error.
+  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+Trade read_trade(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(ErrorKind::input, path + ": cannot be read; is it there?");
+  const json document = json::parse(file, nullptr, false);
+  if (document.is_discarded())
+    throw Error(ErrorKind::input, path + ": is no JSON, or was cut off; remove it to measure anew");
+  return trade_of(Reader(document, path + ": "));
+}
+
+} // namespace pointgi
