@@ -99,7 +99,7 @@ std::string browser() {
 
 /// The page after its scripts have run, without them. `state`: what stands behind # in the address.
 std::string shown(const std::string& program, const TemporaryFolder& folder, const std::string& state) {
-  const std::string command = "timeout 120 " + program + " --headless --no-sandbox --disable-gpu --user-data-dir='" +
+  const std::string command = "timeout 300 " + program + " --headless --no-sandbox --disable-gpu --user-data-dir='" +
                               folder.file("profile") + "' --virtual-time-budget=10000 --dump-dom 'file://" +
                               folder.file("report.html") + "#" + state + "' >'" + folder.file("dom") + "' 2>/dev/null";
   REQUIRE(std::system(command.c_str()) == 0);

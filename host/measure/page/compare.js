@@ -9,10 +9,9 @@ const captionOf = name => {
 };
 
 function drawCompare() {
-  const names = measured.map(run => run.name);
   const option = name => `<option value="${esc(name)}">${esc(name === "reference" ? "the reference" : name)}</option>`;
-  byId("picture-a").innerHTML = names.map(option).join("");
-  byId("picture-b").innerHTML = ["reference", ...names].map(option).join("");
+  byId("picture-a").innerHTML = measured.map(run => option(run.name)).join("");
+  byId("picture-b").innerHTML = ["reference", ...measured.map(run => run.name)].map(option).join("");
   byId("picture-a").value = state.select;
   byId("picture-b").value = state.against;
   for (const radio of document.getElementsByName("view")) radio.checked = radio.value === state.view;
@@ -23,7 +22,8 @@ function drawCompare() {
   delete box.dataset.meanDifference;
   const missing = [state.select, state.against].filter(name => !pictureOf(name));
   if (missing.length) {
-    box.innerHTML = `<p>No picture of ${esc(missing.join(" or "))} lay in the folder when this page was written.</p>`;
+    const names = missing.map(name => name === "reference" ? "the reference" : esc(name)).join(" or ");
+    box.innerHTML = state.select ? `<p>No picture of ${names} lay in the folder when this page was written.</p>` : "<p>No run was measured.</p>";
     return;
   }
   ({side: drawSide, flip: drawFlip, slide: drawSlide, heat: drawHeat})[state.view](box, state.select, state.against);

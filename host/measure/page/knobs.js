@@ -3,15 +3,16 @@
 
 function drawKnobs() {
   const box = byId("knobs"), curves = trade.knobs.filter(curve => curve.runs.length), left = trade.knobs.filter(curve => !curve.runs.length);
-  if (box.children.length === 0)
+  if (curves.length && box.children.length === 0)
     box.innerHTML = curves.map(curve => `<article class="knob" data-knob="${esc(curve.knob)}">` +
       `<h3>${esc(curve.knob)}</h3><div class="plot"></div>` +
       `<p class="${curve.falls && !fallsAsItShould(curve) ? "amiss" : ""}">${esc(findingText(curve))}</p></article>`).join("");
-  [...box.children].forEach((article, i) => {
+  [...box.querySelectorAll(".knob")].forEach((article, i) => {
     const plot = article.querySelector(".plot");
     plot.innerHTML = knobChart(curves[i], Math.max(240, plot.clientWidth));
     reachable(plot);
   });
+  if (curves.length === 0) box.innerHTML = "<p>No knob was measured alone.</p>";
   byId("knobs-left").innerHTML = left.length === 0 ? "" : "<h3>Left out</h3><ul>" +
     left.map(curve => `<li><code>${esc(curve.knob)}</code>: ${esc(curve.finding)}</li>`).join("") + "</ul>";
 }

@@ -25,14 +25,14 @@ function figure(value) {
   if (size >= 1e3 && size < 1e6) return String(Math.round(value));
   return size >= 1e-3 && size < 1e3 ? value.toPrecision(3) : value.toExponential(2).replace("e+", "e");
 }
-const percent = share => `${figure(100 * share)} %`;
+const percent = share => isFinite(share) ? `${figure(100 * share)} %` : "unknown";
 const similarity = ssim => isFinite(ssim) ? ssim.toFixed(4) : "unknown";
 const seconds = value => `${figure(value)} s`;
 const bytes = value => value >= 1e9 ? `${figure(value / 1e9)} GB` : `${figure(value / 1e6)} MB`;
 
 /// An error may be less than the reference can tell: then only its upper end is known.
-const isTold = error => error.value > 0;
-const errorText = error => isTold(error) ? figure(error.value) : `below ${figure(error.high)}`;
+const isTold = error => error.value > 0 && isFinite(error.value);
+const errorText = error => isTold(error) || !isFinite(error.value) ? figure(error.value) : `below ${figure(error.high)}`;
 const errorRange = error => !isTold(error) ? "" : error.low > 0 ? `${figure(error.low)} to ${figure(error.high)}` : `up to ${figure(error.high)}`;
 const errorWithRange = error => errorText(error) + (isTold(error) ? ` (${errorRange(error)})` : "");
 const secondsRange = time => `${figure(time.low)} to ${figure(time.high)}`;

@@ -10,7 +10,7 @@ function drawHead() {
     ["Scene", [trade.scene, ...(trade.overrides || [])].join("  ")], ["Device", trade.device], ["Date", `${trade.date}, pointgi ${trade.version}`],
     ["Picture", `${trade.width} x ${trade.height} pixels`],
     ["Reference", `${reference.source}${reference.seconds > 0 ? `, ${seconds(reference.seconds)}` : ""}${noise}`],
-    ["Budget", `${seconds(trade.budget_seconds)}, of which ${seconds(trade.spent_seconds)} were spent on ${runs.length} runs`],
+    ["Budget", `${seconds(trade.budget_seconds)}, of which ${seconds(trade.spent_seconds)} were spent; ${runs.length} settings`],
   ];
   byId("facts").innerHTML = facts.map(([title, words]) => `<div><dt>${title}</dt><dd>${esc(words)}</dd></div>`).join("");
   const terms = [

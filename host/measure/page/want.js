@@ -8,10 +8,10 @@ function drawWant() {
   ];
   for (const [key, noun, choose, none] of wishes) {
     const field = byId(`want-${key}`), card = byId(`for-${key}`);
-    const given = state[key] || (own ? figure(own[key].value) : "");
-    if (document.activeElement !== field) field.value = given;
-    // The figure in the field is rounded, the scene's own is not.
-    const limit = state[key] || !own ? Number(given.trim().replace(",", ".")) : own[key].value;
+    // The figure in the field is rounded, the scene's own is not; an error that cannot be told is known by its upper end.
+    const usual = own ? (own[key].value > 0 ? own[key].value : own[key].high) : 0;
+    if (document.activeElement !== field) field.value = state[key] || (usual > 0 && isFinite(usual) ? figure(usual) : "");
+    const limit = state[key] ? Number(state[key].trim().replace(",", ".")) : usual;
     const run = limit > 0 ? choose(limit) : undefined;
     card.dataset.want = key;
     card.dataset.run = run ? run.name : "";
@@ -49,7 +49,7 @@ function sentences() {
     ? `For half the time: ${pick(half)} takes ${seconds(half.seconds.value)}; ${errorAgainstOwn(half)}`
     : "For half the time: no measured run is so fast."]);
   if (!isTold(own.error)) {
-    list.push(["half-error", undefined, "For half the error: the scene’s own error is below what this reference can tell."]);
+    list.push(["half-error", undefined, "For half the error: the scene’s own error is not one that this reference can tell."]);
     return list;
   }
   const better = fastestWithinError(own.error.value / 2);
