@@ -14,7 +14,7 @@ function drawKnobs() {
   });
   if (curves.length === 0) box.innerHTML = "<p>No knob was measured alone.</p>";
   byId("knobs-left").innerHTML = left.length === 0 ? "" : "<h3>Left out</h3><ul>" +
-    left.map(curve => `<li><code>${esc(curve.knob)}</code>: ${esc(curve.finding)}</li>`).join("") + "</ul>";
+    left.map(curve => `<li><code>${esc(curve.knob)}</code>: ${esc(curve.finding.replace(/^left out: /, ""))}</li>`).join("") + "</ul>";
 }
 
 const fallsAsItShould = curve => /^falls\b/.test(curve.finding);

@@ -45,7 +45,7 @@ const mostAccurateWithin = limit => least(measured.filter(run => run.seconds.val
 const least = (candidates, by) => [...candidates].sort((a, b) => by(a) - by(b))[0];
 
 /// Methods and stages have colours by their places in these lists; methods have marks, too, for who sees no colours.
-const methods = [...new Set(runs.map(run => run.setting.method))].sort();
+const methods = [...new Set(measured.map(run => run.setting.method))].sort();
 const stages = stageNames();
 const colour = index => `var(--c${index < 0 ? 7 : index % 8})`;
 const methodColour = run => colour(methods.indexOf(run.setting.method));

@@ -63,7 +63,7 @@ function drawAll() {
     cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
     cell(percent(run.bias)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) + `<td>${run.cold ? "anew" : "kept"}</td>` +
     `<td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
-  const refused = run => `<tr data-refused="${esc(run.name)}"><td class="name">${esc(run.name)}</td>${methodCell(run)}` +
+  const refused = run => `<tr data-refused="${esc(run.name)}"><td class="name">${esc(run.name)}</td><td>${esc(run.setting.method)}</td>` +
     `<td colspan="6">not run: ${esc(run.refused)}</td><td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
   const focused = document.activeElement && document.activeElement.dataset.sort;
   byId("all").innerHTML = `<thead><tr>${head.join("")}</tr></thead><tbody>${sorted.map(row).join("")}` +
