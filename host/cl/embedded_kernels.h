@@ -1,16 +1,10 @@
 #pragma once
-#include <string>
+#include "host/embedded_file.h"
 #include <vector>
 
 namespace pointgi {
 
-/// A file of kernels/ as the build found it: name below kernels/ ("lib/rng.cl") and text.
-struct EmbeddedFile {
-  std::string name;
-  std::string text;
-};
-
-/// Written at build time by scripts/cmake/embed_kernels.cmake.
+/// The files of kernels/, by their names below it. Written at build time.
 const std::vector<EmbeddedFile>& embedded_kernels();
 
 } // namespace pointgi
