@@ -5,6 +5,7 @@
 #include "host/atomic_file.h"
 #include "host/measure/knobs.h"
 #include "host/measure/measure.h"
+#include "host/measure/report.h"
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -25,7 +26,7 @@ void require_writable(const std::string& folder) {
   std::error_code failed;
   std::filesystem::create_directories(pictures, failed);
   if (failed) throw output_error(pictures, "create the folder", failed.value());
-  for (const char* name : {trade_json_name, trade_csv_name})
+  for (const char* name : {trade_json_name, trade_csv_name, report_name})
     const AtomicFile probe(file_in(folder, name));
   const AtomicFile probe(file_in(pictures, "reference.png"));
 }
@@ -118,8 +119,10 @@ ExitCode run_measure(const MeasureCommand& command) {
       measure(context, options, run.control(), [&](const Trade& trade) { save(options.folder, trade); });
   run.end_progress();
   print_front(measured.trade);
+  save(options.folder, measured.trade); // the runs on the front are known now
+  write_report(measured.trade, json_of(measured.trade), options.folder);
   if (command.target) print_recommendation(measured.trade, *command.target);
-  for (const char* name : {trade_json_name, trade_csv_name})
+  for (const char* name : {report_name, trade_json_name, trade_csv_name})
     std::printf("%s\n", file_in(options.folder, name).c_str());
   if (!measured.interrupted) return ExitCode::done;
   spdlog::warn("interrupted: what was measured is kept, and the same command goes on with it");

@@ -53,7 +53,7 @@ const std::vector<Row>& rows() {
        "",
        Needs::exchange,
        may_rise,
-       "Methods differ in kind: none is always the more accurate one.",
+       "Methods differ in kind: which is the more accurate depends on the scene.",
        {"none", "cones", "fmm", "directions", "gather"},
        [](const Scene& s) { return s.radiosity.method; }},
       {"radiosity.directions",

@@ -100,7 +100,7 @@ void write_report(const Trade& trade, const std::string& trade_json, const std::
   }
   text += page.substr(at);
 
-  AtomicFile file((std::filesystem::path(folder) / "report.html").string());
+  AtomicFile file((std::filesystem::path(folder) / report_name).string());
   file.write(text.data(), text.size());
   file.commit();
 }

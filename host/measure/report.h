@@ -5,6 +5,8 @@
 
 namespace pointgi {
 
+inline constexpr char report_name[] = "report.html";
+
 /// Writes `folder`/report.html: one file that shows the measurement without a network, with the pictures that `trade`
 /// names and that lie in `folder`. `trade_json` is json_of(trade); the page shows what stands there. A picture that is
 /// missing or is no PNG is left out, and the page says so. Throws Error(output) where the file cannot be written.
