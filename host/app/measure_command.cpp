@@ -119,7 +119,6 @@ ExitCode run_measure(const MeasureCommand& command) {
       measure(context, options, run.control(), [&](const Trade& trade) { save(options.folder, trade); });
   run.end_progress();
   print_front(measured.trade);
-  save(options.folder, measured.trade); // the runs on the front are known now
   write_report(measured.trade, json_of(measured.trade), options.folder);
   if (command.target) print_recommendation(measured.trade, *command.target);
   for (const char* name : {report_name, trade_json_name, trade_csv_name})

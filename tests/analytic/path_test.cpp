@@ -142,7 +142,7 @@ TEST_CASE("two seeds agree within their variance, and the variance tells the noi
   // Strata make the true noise smaller than that of independent samples, by which it is told; half of it is the random
   // rest of the path. A wrong variance is off by the number of samples, or by 2.
   for (const char* colour : {"R", "G", "B"}) {
-    const double square = z_test(a, b, colour).mean_square;
+    const double square = mean_square_deviation(a, b, colour);
     CHECK(square > 0.4);
     CHECK(square < 1.2);
   }
@@ -168,7 +168,7 @@ TEST_CASE("strata are not tied to each other: the mean of many samples has no er
   const Picture a = trace(scene, "", 1, many), b = trace(scene, "", 2, many);
   check_same(a, b);
   for (const char* colour : {"R", "G", "B"})
-    CHECK(z_test(a, b, colour).mean_square < 1.2);
+    CHECK(mean_square_deviation(a, b, colour) < 1.2);
 }
 
 TEST_CASE("the variance falls with the number of samples, in one pass and over many") {

@@ -12,14 +12,6 @@
 
 namespace pointgi::test {
 
-/// Of the values a - b, by the variances of their noise; pixels without noise in either must be equal.
-struct ZTest {
-  double of_mean = 0.0;     ///< of the mean difference, in standard deviations
-  double largest = 0.0;     ///< of any pixel
-  double mean_square = 0.0; ///< over pixels; 1 where the variance tells the noise rightly
-  std::size_t unequal = 0;  ///< pixels that differ without noise
-};
-
 namespace detail {
 
 /// Sums in float: what they round off is no noise of the samples.
@@ -32,27 +24,19 @@ inline bool differs_without_noise(double a, double b) {
 
 } // namespace detail
 
-inline ZTest z_test(const Picture& a, const Picture& b, const std::string& colour) {
+/// Mean over the pixels with noise of (a - b)^2 over the variance of their noise: 1 where it tells the noise rightly.
+inline double mean_square_deviation(const Picture& a, const Picture& b, const std::string& colour) {
   const std::vector<float>&x = a.channels.at(colour), &y = b.channels.at(colour);
   const std::vector<float>&vx = a.channels.at("Variance." + colour), &vy = b.channels.at("Variance." + colour);
-  ZTest z;
-  double sum = 0.0, variance = 0.0;
+  double sum = 0.0;
   std::size_t noisy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double off = double{x[i]} - double{y[i]}, v = double{vx[i]} + double{vy[i]};
-    sum += off;
-    variance += v;
-    if (!detail::has_noise(double{x[i]}, v)) {
-      z.unequal += detail::differs_without_noise(double{x[i]}, double{y[i]});
-      continue;
-    }
-    z.largest = std::fmax(z.largest, std::fabs(off) / std::sqrt(v));
-    z.mean_square += off * off / v;
+    if (!detail::has_noise(double{x[i]}, v)) continue;
+    sum += off * off / v;
     ++noisy;
   }
-  z.of_mean = variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
-  if (noisy > 0) z.mean_square /= static_cast<double>(noisy);
-  return z;
+  return noisy > 0 ? sum / static_cast<double>(noisy) : 0.0;
 }
 
 /// The hypothesis that a picture shows the same light as another, or one that differs by no more than is allowed.
@@ -68,7 +52,7 @@ namespace detail {
 /// Differences and variances, added up over a part of the picture.
 struct PartSums {
   double off = 0.0, mean = 0.0, variance = 0.0;
-  std::size_t pixels = 0, unequal = 0;
+  std::size_t unequal = 0; ///< pixels that differ without noise
 };
 
 /// Every part of a picture that is tested, by name. Pixels of one albedo are those of one material, as far as the
