@@ -1,6 +1,7 @@
 /// Every radiosity method and its knobs on the same scenes: seconds, rays, bytes, and how far the radiosity is from
 /// that of the solver of every pair, or where all pairs are too many from that of very many directions. bench_methods
 /// --help
+#include "host/cache/vmap_cache.h"
 #include "host/radiosity/direct.h"
 #include "host/radiosity/directions.h"
 #include "host/radiosity/plan.h"
@@ -45,7 +46,8 @@ struct Result {
   std::vector<double> radiosity; ///< [points x 3]: reflected, all light
 };
 
-Result run(Session& session, const BenchScene& scene, const Way& w) {
+Result run_once(Session& session, const BenchScene& scene, const Way& w) {
+  const NoVMapsKept anew;
   const auto begin = std::chrono::steady_clock::now();
   const RadiosityMethod& method = *radiosity_method(w.settings.method);
   const ExchangeScene exchange = scene.exchange();
@@ -70,6 +72,15 @@ Result run(Session& session, const BenchScene& scene, const Way& w) {
     result.radiosity.push_back(double{scene.points[i / 3].colour[i % 3]} *
                                (double{scene.direct[i]} + double{field.irradiance[i]}));
   return result;
+}
+
+/// Once more where kernels ran for the first time, as a driver then loads them.
+Result run(Session& session, const BenchScene& scene, const Way& w) {
+  for (;;) {
+    const std::size_t programs = session.programs_asked().size(), kernels = session.kernel_times().size();
+    Result result = run_once(session, scene, w);
+    if (session.programs_asked().size() == programs && session.kernel_times().size() == kernels) return result;
+  }
 }
 
 struct Errors {
