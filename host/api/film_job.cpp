@@ -147,6 +147,16 @@ RenderTotals FilmJob::render(const std::function<void(const Band&)>& take) {
   return totals;
 }
 
+GrowingFilm FilmJob::growing() const {
+  const Prepared::Parts& prepared = *light_.prepared;
+  return {prepared.context->session, prepared.ready.on_device, *request_};
+}
+
+void FilmJob::set_samples(int samples) {
+  view_.render.spp = samples;
+  lighting_.params.samples = static_cast<pg_uint>(samples);
+}
+
 void FilmJob::warn(const RenderTotals& totals) const {
   warn_of_view(totals, view_, light_.prepared->ready, light_.warned_of_dark);
 }

@@ -2,7 +2,7 @@
 /// What the objects of the library are made of; the command line looks in here for what it reports. Not installed.
 #include "host/api/film.h"
 #include "host/cl/session.h"
-#include "host/render/render.h"
+#include "host/render/growing_film.h"
 #include "host/scene/scene_document.h"
 #include "host/stages/light_stages.h"
 #include "host/stages/lit_cloud.h"
@@ -64,6 +64,11 @@ public:
   /// The stage `render`: hands finished bands to `take`; stops when the run does, with the rows that are finished. The
   /// log hears what black or empty pictures come from.
   RenderTotals render(const std::function<void(const Band&)>& take);
+  /// A picture that grows pass by pass; no stage is logged for it. Borrows the job.
+  GrowingFilm growing() const;
+  /// How many samples attributes() tells of; before growing(), or between its growths.
+  void set_samples(int samples);
+
   /// Warnings of the picture that was made.
   void warn(const RenderTotals& totals) const;
 

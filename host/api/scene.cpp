@@ -1,6 +1,7 @@
 #include "host/api/parts.h"
 #include "host/error.h"
 #include "host/scene/overrides.h"
+#include "host/scene/presets.h"
 #include <cmath>
 
 namespace pointgi::api {
@@ -78,10 +79,10 @@ PointCloud cloud_of(const Points& points) {
 pointgi::Scene Scene::Parts::description() const {
   pointgi::Scene scene = scene_of(document);
   if (quality_of_points) {
-    apply_bake_quality(quality, scene);
+    apply_bake_preset(preset_named(quality, "quality"), scene);
     scene.ground = scene.ground && !document.bare; // a lit cloud is the cloud
   } else
-    apply_quality(quality, scene, !quality_of_samples);
+    apply_preset(preset_named(quality, "quality"), scene, !quality_of_samples);
   return scene;
 }
 
@@ -136,8 +137,7 @@ void Scene::set(const std::string& assignment) {
 }
 
 void Scene::set_quality(const std::string& quality, bool samples) {
-  if (quality != "draft" && quality != "normal" && quality != "high")
-    throw Error(ErrorKind::usage, "quality: expected \"draft\", \"normal\" or \"high\", found \"" + quality + "\"");
+  preset_named(quality, "quality");
   own().quality = quality;
   own().quality_of_samples = samples;
   own().quality_of_points = false;

@@ -17,7 +17,7 @@ struct LightOptions {
   std::string ground;   ///< "auto" or "none"; empty: as the scene has it
   std::string device;
   std::optional<unsigned> seed;
-  std::string quality = "normal";     ///< draft: four times epsilon, a quarter of the samples; high: half, four
+  std::string quality = "normal";     ///< a name of host/scene/presets.h
   std::vector<std::string> overrides; ///< key.path=value
   std::string stats_file;
   bool quiet = false;
@@ -31,6 +31,10 @@ struct RenderOptions : LightOptions {
   std::string trace_file;
   std::string pixel_bounds; ///< "x0,x1,y0,y1"
   std::string dump_folder;
+  std::optional<double> seconds; ///< --time: that the whole command may take
+  std::optional<double> error;   ///< --error: relMSE that is enough
+  std::string trade;             ///< trade.json, or its folder; empty: that which is kept of the scene
+  bool progressive = false;      ///< a first picture soon, and better ones after it
 };
 
 struct BakeOptions : LightOptions {

@@ -1,5 +1,6 @@
 #include "host/app/commands.h"
 #include "host/scene/nearest.h"
+#include "host/scene/presets.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -94,7 +95,7 @@ CLI::Option* add_light_options(CLI::App& command, LightOptions& options, Common&
       ->check(CLI::IsMember(std::vector<std::string>{"y", "z", "x", "-y", "-z", "-x"}));
   add_device_options(command, options.device, common);
   command.add_option("--seed", options.seed, "seed of the samples (default 1)");
-  command.add_option("--quality", options.quality, quality)->check(CLI::IsMember({"draft", "normal", "high"}));
+  command.add_option("--quality", options.quality, quality)->check(CLI::IsMember(preset_names()));
   command
       .add_option("--set", options.overrides,
                   "a value of the scene file, e.g. camera.fov_deg=30 or cloud.0.normals=flip; may repeat")
@@ -124,6 +125,22 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
   command.add_option("--trace", render.trace_file, "write stages and kernels as a Chrome trace to this JSON file");
   command.add_option("--pixelbounds", render.pixel_bounds,
                      "render only x0,x1,y0,y1 (ends exclusive); the PNG holds that part");
+  command
+      .add_option("--time", render.seconds,
+                  "seconds that the whole command may take: settings are chosen and samples added for the best picture "
+                  "in them")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--error", render.error,
+                  "relMSE that is enough: the fastest settings that reach it, and samples until it is reached; best "
+                  "after `pointgi measure` of the scene")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--trade", render.trade,
+                     "what --time and --error choose by: the folder of `pointgi measure` (default: its last of this "
+                     "scene here)");
+  command.add_flag(
+      "--progressive", render.progressive,
+      "write a first picture soon, and better ones after it, as --time does, and as is done on a terminal");
   command.add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
 }
 
@@ -164,8 +181,9 @@ int run(int argc, char** argv) {
                     "the picture, OUT.exr, and OUT.png beside it; default: the input's name, here; replaces older ones",
                     "brightens the PNG by this many stops, or auto: chosen from the picture (default: 0 of a scene, "
                     "auto of a bare cloud)",
-                    "draft: a quarter of the scene's samples a pixel and four times its radiosity.epsilon; normal; "
-                    "high: four times the samples, half of epsilon");
+                    "draft: a quarter of the scene's samples a pixel, half of its radiosity.directions and four times "
+                    "its radiosity.epsilon; normal: the scene's own; high: four times, twice and half of them; final: "
+                    "16 times, four times and a quarter");
   add_render_options(*render_command, render);
 
   BakeOptions bake;
@@ -175,7 +193,8 @@ int run(int argc, char** argv) {
                     "the lit cloud, LIT.ply: colours, and radiosity [W/m2] as scalar fields",
                     "brightens the colours by this many stops, or auto: chosen from the points (default: 0 of a "
                     "scene, auto of a bare cloud); the radiosity stays as it is",
-                    "draft: four times the scene's radiosity.epsilon; normal; high: half of it")
+                    "draft: four times the scene's radiosity.epsilon and half of its directions; normal: the scene's "
+                    "own; high: half and twice; final: a quarter and four times")
       ->required();
   bake_command->add_flag("--sky", bake.sky,
                          "add scalar_sky, the share of the sky that each point sees (ambient occlusion); of a scene "

@@ -6,6 +6,7 @@
 #include "host/measure/knobs.h"
 #include "host/measure/measure.h"
 #include "host/measure/report.h"
+#include "host/measure/stored_trade.h"
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -119,6 +120,7 @@ ExitCode run_measure(const MeasureCommand& command) {
       measure(context, options, run.control(), [&](const Trade& trade) { save(options.folder, trade); });
   run.end_progress();
   print_front(measured.trade);
+  store_trade(measured.trade);
   write_report(measured.trade, json_of(measured.trade), options.folder);
   if (command.target) print_recommendation(measured.trade, *command.target);
   for (const char* name : {report_name, trade_json_name, trade_csv_name})

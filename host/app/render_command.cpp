@@ -1,14 +1,18 @@
-#include "host/api/parts.h"
+#include "host/app/choose_setting.h"
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
 #include "host/app/light_command.h"
+#include "host/app/make_picture.h"
 #include "host/app/output_files.h"
+#include "host/app/progress.h"
 #include "host/app/stats.h"
+#include "host/scene/presets.h"
 #include "host/stages/view_warnings.h"
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 namespace pointgi {
 
@@ -58,12 +62,19 @@ std::string output_of(const RenderOptions& options) {
   return options.output.empty() ? std::filesystem::path(options.input).stem().string() + ".exr" : options.output;
 }
 
-/// Everything that can be refused is refused here, before the work and not after it.
-api::Scene checked_scene(const RenderOptions& options) {
+/// Everything that can be refused is refused here, before the work and not after it. `chosen`: overrides of the scene
+/// file, over which flags win.
+api::Scene checked_scene(const RenderOptions& options, const std::vector<std::string>& chosen = {}) {
   if (options.integrator != "path" && !options.paths.empty())
     throw Error(ErrorKind::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
-  api::Scene checked = api::Scene::from_file(options.input, all_overrides_of(options));
+  if (options.spp && (options.seconds || options.error))
+    throw Error(ErrorKind::usage, std::string("--spp: the samples follow from ") +
+                                      (options.seconds ? "--time" : "--error") + "; leave one of the two out");
+  std::vector<std::string> overrides = chosen;
+  for (const std::string& own : all_overrides_of(options))
+    overrides.push_back(own);
+  api::Scene checked = api::Scene::from_file(options.input, overrides);
   checked.set_quality(options.quality, !options.spp);
   const Scene scene = checked.parts()->description();
   if (options.integrator != "path") require_possible_radiosity(scene);
@@ -84,24 +95,6 @@ double kernel_seconds(const Session& session) {
   return seconds;
 }
 
-/// Renders and writes the picture; false when it was interrupted before a row was finished, which leaves an older
-/// picture alone.
-bool render_picture(api::Context::Parts& context, api::FilmJob& job, PictureWriter& writer, const RunControl& control,
-                    RenderTotals& totals) {
-  totals = job.render([&](const Band& band) { writer.write(band); });
-  for (const auto& [name, time] : context.session.kernel_times())
-    spdlog::debug("kernel {}: {} launches, {:.3f} s", name, time.launches, time.seconds);
-  if (totals.interrupted && totals.rows_done == 0) return false;
-  const double render_seconds = context.stages.records().back().seconds;
-  const RunControl to_the_end{{}, control.progress, control.log}; // what is there is kept
-  const RunScope scope(to_the_end);
-  context.stages.start("image");
-  writer.finish(render_seconds);
-  const PixelWindow& w = job.window();
-  context.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
-  return true;
-}
-
 void write_reports(const RenderOptions& options, const api::Light::Parts& light, const RenderTotals& totals) {
   const api::Prepared::Parts& prepared = *light.prepared;
   const api::Context::Parts& context = *prepared.context;
@@ -119,48 +112,104 @@ void write_reports(const RenderOptions& options, const api::Light::Parts& light,
     write_text(options.trace_file, context.stages.chrome_trace(context.session.launches()));
 }
 
+double pixels_of(const api::FilmOptions& film, const RenderSettings& render) {
+  if (!film.window) return double{1.0} * render.width * render.height;
+  const auto& [x0, x1, y0, y1] = *film.window;
+  return double{1.0} * (x1 - x0) * (y1 - y0);
+}
+
+bool has_open_goal(const RenderOptions& options) {
+  return options.seconds || options.error;
+}
+
+/// The settings of the light as --set would give them.
+std::vector<std::string> light_overrides_of(const RenderOptions& options) {
+  std::vector<std::string> all = options.overrides;
+  const Scene scene = api::Scene::from_file(options.input, options.overrides).parts()->description();
+  for (const std::string& text : preset_overrides(preset_named(options.quality, "--quality"), scene))
+    all.push_back(text);
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& text) { return text.rfind("render.", 0) == 0; }),
+            all.end());
+  return all;
+}
+
+/// What --time and --error make of it, or what is known beforehand of the picture as it was asked for.
+std::optional<ChosenSetting> setting_for(const RenderOptions& options, const Scene& scene, const std::string& device,
+                                         double pixels, double begun) {
+  if (options.integrator == "path") return std::nullopt;
+  const std::optional<Trade> trade = trade_for(options, device);
+  if (!trade) return std::nullopt;
+  std::optional<ChosenSetting> setting =
+      has_open_goal(options) ? choose_by_trade(*trade, options, options.overrides, pixels, begun)
+                             : forecast_of(*trade, light_overrides_of(options), scene.render.spp, pixels);
+  if (setting) spdlog::info("{}: {}", options.input, setting->told);
+  return setting;
+}
+
+/// A picture of more pixels does not grow unless that is asked for: a film of 40 floats a pixel is kept.
+constexpr double most_growing_pixels = 1 << 23;
+
+bool grows(const RenderOptions& options, double pixels) {
+  if (options.progressive || has_open_goal(options)) return true;
+  return !options.quiet && isatty(STDERR_FILENO) != 0 && pixels <= most_growing_pixels;
+}
+
+PictureGoal goal_of(const RenderOptions& options, const std::optional<ChosenSetting>& setting, int samples) {
+  PictureGoal goal;
+  if (setting) goal = setting->goal;
+  goal.samples = has_open_goal(options) ? goal.samples : samples;
+  goal.until = options.seconds;
+  goal.error = options.error;
+  return goal;
+}
+
 } // namespace
 
 ExitCode run_render(const RenderOptions& options) {
   CommandRun run(options.quiet);
   StageLog stages;
   stages.start("scene");
-  const api::Scene scene = checked_scene(options);
-  const Scene description = scene.parts()->description();
+  api::Scene scene = checked_scene(options);
+  Scene description = scene.parts()->description();
   api::FilmOptions film;
   film.window = window_of(options, description.render);
   film.paths = options.paths;
+  const double pixels = pixels_of(film, description.render);
   stages.finish(description.clouds.size() + description.shapes.size(), "objects");
 
   const api::Context context = open_context(options, std::move(stages), run.control());
   api::Context::Parts& device = *context.parts();
   device.session.dump_kernels_to(options.dump_folder);
   if (!options.trace_file.empty()) device.session.record_launches();
+  const std::optional<ChosenSetting> setting =
+      setting_for(options, description, context.device(), pixels, device.stages.seconds());
+  if (has_open_goal(options) && setting) {
+    scene = checked_scene(options, setting->overrides);
+    description = scene.parts()->description();
+  }
   const api::Prepared prepared(context, scene, run.control());
-  const api::Light light(prepared, {true, options.integrator == "path"}, run.control());
-  api::FilmJob job(*light.parts(), film);
-  PictureWriter writer(output_of(options), description.render.width, description.render.height, job.window(),
-                       job.channels(), job.attributes(),
-                       description.render.auto_exposure ? std::nullopt
-                                                        : std::optional<double>(description.render.exposure));
-  RenderTotals totals;
-  if (!render_picture(device, job, writer, run.control(), totals))
-    throw Error(ErrorKind::interrupted, "interrupted before the first rows were finished; nothing was written");
-  const PngLight& shown = writer.png_light();
+  PictureOutput output(output_of(options), description.render.auto_exposure
+                                               ? std::nullopt
+                                               : std::optional<double>(description.render.exposure));
+  const PictureRun picture{context, prepared, film, options.integrator == "path", run.control()};
+  const MadePictureFiles made =
+      grows(options, pixels) ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), output)
+                             : make_picture_at_once(picture, output);
   if (description.render.auto_exposure)
-    spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", shown.exposure, shown.exposure);
-  job.warn(totals);
-  if (!totals.interrupted) warn_of_exposure(shown, prepared.parts()->scene, prepared.parts()->ready);
-  write_reports(options, *light.parts(), totals);
+    spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,
+                 output.png_light().exposure);
+  if (made.light && !made.interrupted)
+    warn_of_exposure(output.png_light(), prepared.parts()->scene, prepared.parts()->ready);
+  if (made.light) write_reports(options, *made.light->parts(), made.totals);
   run.end_progress();
-  std::printf("%s\n%s\n", writer.exr_path().c_str(), writer.png_path().c_str());
-  if (totals.interrupted) {
-    spdlog::warn("interrupted: the picture holds its first {} of {} rows", totals.rows_done,
-                 job.window().y1 - job.window().y0);
+  std::printf("%s\n%s\n", output.exr_path().c_str(), output.png_path().c_str());
+  if (made.interrupted) {
+    spdlog::warn("interrupted: {}", made.told);
     return ExitCode::interrupted;
   }
+  if (!made.told.empty()) spdlog::info("{}", made.told);
   spdlog::info("{} splats, {:.1f} million rays, {} ({} of kernels on the device)", prepared.size(),
-               1e-6 * static_cast<double>(totals.rays), duration_text(device.stages.seconds()),
+               1e-6 * static_cast<double>(made.totals.rays), duration_text(device.stages.seconds()),
                duration_text(kernel_seconds(device.session)));
   return ExitCode::done;
 }

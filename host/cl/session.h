@@ -89,6 +89,11 @@ public:
   Buffer<T> upload(const std::vector<T, Allocator>& data) {
     return upload(data.data(), data.size());
   }
+  /// The first `size` elements, which the buffer has room for.
+  template <typename T>
+  void write(const Buffer<T>& buffer, const T* data, std::size_t size) {
+    write_bytes(buffer.handle, data, size * sizeof(T));
+  }
   template <typename T>
   std::vector<T> download(const Buffer<T>& buffer, std::size_t count) {
     std::vector<T> data(count);
@@ -134,6 +139,7 @@ public:
   /// Given as source to a driver that keeps compiled kernels itself; whether it compiled them again only it knows.
   std::size_t programs_kept_by_driver() const { return kept_by_driver_; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
+  std::uint64_t bytes_held() const { return bytes_->now; }
   /// From now on peak_bytes() is of what is there now and comes later.
   void forget_peak() { bytes_->peak = bytes_->now; }
   /// What the device may still have for what is kept on it. Half of it where its memory is the host's.

@@ -1,6 +1,7 @@
 #include "host/measure/knobs.h"
 #include "host/error.h"
 #include "host/scene/nearest.h"
+#include "host/scene/presets.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -29,6 +30,9 @@ struct Row {
   std::string (*own)(const Scene&);
   std::vector<const char*> with = {}; ///< overrides that go with every value
 };
+
+/// --quality, whose values stand for several keys.
+constexpr const char* quality_name = "quality";
 
 std::string number(double value) {
   return fmt::format("{:g}", value);
@@ -187,6 +191,16 @@ const std::vector<Row>& rows() {
   return all;
 }
 
+Knob quality_knob(const Scene& scene) {
+  Knob knob{quality_name, quality_name, true, "Samples and the light's settings grow together.", {}};
+  knob.is_of_several_keys = true;
+  for (const Preset& preset : presets()) {
+    const std::vector<std::string> overrides = preset_overrides(preset, scene);
+    knob.values.push_back({preset.name, overrides, overrides.empty()});
+  }
+  return knob;
+}
+
 std::string name_of_key(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
@@ -242,7 +256,7 @@ KnobValue value_of(const Row& row, const std::string& text, const KnobScene& of)
 }
 
 Knob knob_of(const Row& row, const KnobScene& of) {
-  Knob knob{name_of_key(row.key), row.key, row.falls, row.theory, {}, reason_against(row, of)};
+  Knob knob{name_of_key(row.key), row.key, row.falls, row.theory, {}, reason_against(row, of), row.method};
   const double pairs = 0.5 * static_cast<double>(of.points) * static_cast<double>(of.points);
   if (knob.left_out.empty())
     for (const char* text : row.values)
@@ -253,14 +267,14 @@ Knob knob_of(const Row& row, const KnobScene& of) {
 } // namespace
 
 std::vector<Knob> knobs_of(const KnobScene& scene) {
-  std::vector<Knob> knobs;
+  std::vector<Knob> knobs{quality_knob(scene.scene)};
   for (const Row& row : rows())
     knobs.push_back(knob_of(row, scene));
   return knobs;
 }
 
 std::vector<std::string> knob_names() {
-  std::vector<std::string> names;
+  std::vector<std::string> names{quality_name};
   for (const Row& row : rows())
     names.push_back(name_of_key(row.key));
   return names;

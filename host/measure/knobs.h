@@ -19,6 +19,8 @@ struct Knob {
   std::string theory; ///< why it does, or why it need not, in a sentence
   std::vector<KnobValue> values; ///< from cheap to dear
   std::string left_out = {};     ///< why the scene does not need it; empty: it does
+  std::string method = {};       ///< radiosity.method that alone reads it; empty: any
+  bool is_of_several_keys = false;
 };
 
 /// A scene as far as the choice of knobs depends on it.

@@ -18,7 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of the budget. What is begun is stopped before the end is later than that.
-constexpr double reference_share = 1.0 / 3.0, latest_end = 1.05;
+constexpr double reference_share = 1.0 / 3.0, warm_share = 0.05, latest_end = 1.05;
+
+/// Of the first picture of each run.
+constexpr unsigned first_seed = 1;
 
 /// What is found is kept at least this often [s].
 constexpr double save_interval = 5.0;
@@ -60,7 +63,10 @@ double exposure_for(const RenderSettings& render, const Picture& picture) {
 
 /// The mean of what is known of `count` pictures and of one more.
 void add_to_mean(double& mean, double one, std::size_t count) {
-  mean += (one - mean) / static_cast<double>(count + 1);
+  if (count == 0)
+    mean = one;
+  else
+    mean += (one - mean) / static_cast<double>(count + 1);
 }
 
 class Measurement {
@@ -94,6 +100,7 @@ public:
     bool whole = true;
     if (!resumed) whole = first_run();
     if (whole) whole = search(trade_, knobs(), world());
+    if (whole) whole = measure_warm();
     if (trade_.runs.empty()) throw Error(ErrorKind::interrupted, "interrupted before a picture was measured");
     mark_front(trade_);
     save();
@@ -166,6 +173,7 @@ private:
       size = {made_.first.width, made_.first.height};
     }
     const RenderSettings& render = maker_.scene(inner_).render;
+    trade_.prepare_seconds = maker_.prepare_seconds();
     if (trade_.width > 0) size = {trade_.width, trade_.height};
     if (!size) size = chosen_size(render.width, render.height);
     maker_.set_size(size->first, size->second);
@@ -217,8 +225,33 @@ private:
     return knobs_;
   }
 
+  /// Once more with a kept visibility map, the scene's own setting and the front, where it took much of their time.
+  /// False where the user stops it.
+  bool measure_warm() {
+    constexpr double much = 0.1;
+    mark_front(trade_);
+    for (MeasuredRun& run : trade_.runs) {
+      const auto vmap = run.stages.find("vmap");
+      if (run.warm_seconds > 0.0 || !(run.on_front || run.name == own_name) || vmap == run.stages.end() ||
+          vmap->second < much * run.seconds.value || 2.0 * run.seconds.value > warm_until() - elapsed())
+        continue;
+      stop_at_ = warm_until();
+      try {
+        run.warm_seconds = maker_.make_warm(run.setting.overrides, first_seed, inner_).seconds;
+      } catch (const Error&) {
+        if (user_stops()) return false;
+        return true; // the time is over
+      }
+      tell_progress();
+    }
+    return true;
+  }
+  double warm_until() const { return latest_end * options_.budget; }
+
   SearchWorld world() {
-    return {[this](MeasuredRun& run, double most) { return measure_once(run, most); }, [this] { return left(); }};
+    return {[this](MeasuredRun& run, double most) { return measure_once(run, most); },
+            [this] { return left() - warm_share * options_.budget; },
+            [this](const MeasuredRun& run) { return maker_.kept_seconds(run.setting.overrides, first_seed); }};
   }
 
   bool measure_once(MeasuredRun& run, double most) {
@@ -228,7 +261,7 @@ private:
     else
       stop_at_ = std::min(begun + std::max(most, 0.0), latest_end * options_.budget);
     try {
-      const auto seed = static_cast<unsigned>(run.repeats.size() + 1);
+      const auto seed = first_seed + static_cast<unsigned>(run.repeats.size());
       MadePicture made = maker_.make(run.setting.overrides, seed, inner_);
       if (made.compiled) {
         stop_at_ = std::max(stop_at_, std::min(stop_at_ + (elapsed() - begun), latest_end * options_.budget));
@@ -277,10 +310,12 @@ private:
       return;
     }
     const Difference off = difference(made.picture, run.name, reference_->mean(), "reference").all;
+    add_to_mean(run.noise, reference_->noise(made.picture), count);
     add_to_mean(run.bias, off.bias, count);
     add_to_mean(run.ssim, off.ssim, count);
     if (count == 0) {
       run.setting.method = made.method;
+      run.samples = made.samples;
       run.picture = std::string(pictures_name) + "/" + run.name + ".png";
       write_png(made.picture, path_of(run.picture), exposure_);
     }

@@ -1,6 +1,7 @@
 #include "host/measure/reference.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pointgi {
 
@@ -85,6 +86,18 @@ std::vector<double> Reference::errors(const Picture& picture) const {
 
 double Reference::error(const Picture& picture) const {
   return mean_of(errors(picture));
+}
+
+double Reference::noise(const Picture& picture) const {
+  double sum = 0.0;
+  for (const char* colour : colours) {
+    const auto variance = picture.channels.find(std::string("Variance.") + colour);
+    if (variance == picture.channels.end()) return std::numeric_limits<double>::infinity();
+    const std::vector<float>& b = mean_.channels.at(colour);
+    for (std::size_t i = 0; i < b.size(); ++i)
+      sum += variance->second[i] / (double{b[i]} * b[i] + eps_);
+  }
+  return sum / (3.0 * static_cast<double>(noise_.front().size()));
 }
 
 double Reference::deviation(const Picture& picture) const {

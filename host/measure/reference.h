@@ -26,6 +26,10 @@ public:
 
   double error(const Picture& picture) const;
 
+  /// What the pixels' variances, of its channels Variance.R, .G and .B, add to error(picture); infinite where they are
+  /// not known.
+  double noise(const Picture& picture) const;
+
   /// Standard deviation of error(picture) by the reference's noise alone, which all pictures have in common.
   double deviation(const Picture& picture) const;
 

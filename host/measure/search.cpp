@@ -1,8 +1,10 @@
 #include "host/measure/search.h"
+#include "host/measure/finding.h"
+#include "host/measure/moves.h"
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace pointgi {
@@ -23,24 +25,6 @@ double error_of(const MeasuredRun& run) {
   return std::max(run.error.value, least_error);
 }
 
-std::string key_of(const std::string& override_text) {
-  return override_text.substr(0, override_text.find('='));
-}
-
-/// Both lists of overrides in one, or none where they want other values of one key.
-std::optional<std::vector<std::string>> together(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  std::vector<std::string> all = a;
-  for (const std::string& one : b) {
-    const auto same_key = std::find_if(all.begin(), all.end(), [&](const auto& x) { return key_of(x) == key_of(one); });
-    if (same_key == all.end())
-      all.push_back(one);
-    else if (*same_key != one)
-      return std::nullopt;
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
 /// A run may take this long [s] whatever the budget: its kernels may have to be built.
 constexpr double least_limit = 3.0;
 
@@ -55,7 +39,7 @@ public:
     own.name = own_name;
     if (!once(place_of(own), budget)) return false;
     longest_ = std::max({options_.longest_share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
-    const bool whole = singles() && combinations() && repeats();
+    const bool whole = choose_start() && singles() && combinations() && repeats();
     mark_front(trade_);
     tell_curves();
     return whole;
@@ -70,6 +54,11 @@ private:
     return trade_.runs.size() - 1;
   }
 
+  bool is_known(const MeasuredRun& run) const {
+    return std::any_of(trade_.runs.begin(), trade_.runs.end(),
+                       [&](const MeasuredRun& other) { return other.name == run.name; });
+  }
+
   /// A first repetition, where there is none. A run that has never been measured does not stay.
   bool once(std::size_t at, double most) {
     MeasuredRun& run = trade_.runs[at];
@@ -79,41 +68,81 @@ private:
     return false;
   }
 
-  /// What the next value of a knob will cost, by those before it.
-  double next_cost(const std::vector<std::size_t>& before) const {
+  const MeasuredRun& own() const { return trade_.runs.front(); }
+  const MeasuredRun& start() const { return trade_.runs[start_]; }
+
+  /// Knobs alone are turned about the scene's own setting, or where that would take too long about a cheap one, from
+  /// which dearer settings can be told as well.
+  bool choose_start() {
+    double values = 0.0;
+    for (const Knob& knob : knobs_)
+      if (!costs_little(knob)) values += static_cast<double>(knob.values.size());
+    if (values * seconds_of(own()) <= options_.singles_share * world_.left()) return true;
+    MeasuredRun cheap;
+    cheap.name = cheap_name;
+    cheap.setting.overrides = cheapest(knobs_, own().setting.method);
+    if (cheap.setting.overrides.empty()) return true;
+    const std::size_t at = place_of(cheap);
+    if (!once(at, std::min(world_.left(), longest_))) return false;
+    if (!trade_.runs[at].refused.empty() || seconds_of(trade_.runs[at]) > 0.5 * seconds_of(own())) return true;
+    start_ = at;
+    longest_ = std::max(options_.longest_share * world_.left(), least_limit);
+    return true;
+  }
+
+  /// What a first measurement costs of a run that takes so long.
+  double cost_of(const MeasuredRun& run, double seconds) const {
+    return world_.kept ? std::max(0.0, seconds - world_.kept(run)) : seconds;
+  }
+
+  /// How long the next value of a knob will take, by those before it.
+  double next_seconds(const std::vector<std::size_t>& before) const {
     std::vector<double> costs;
     for (const std::size_t i : before)
       if (trade_.runs[i].refused.empty()) costs.push_back(seconds_of(trade_.runs[i]));
-    const double own = seconds_of(trade_.runs.front());
-    if (costs.empty()) return own;
+    if (costs.empty()) return seconds_of(start());
     if (costs.size() == 1) return costs.back() * 2.0;
     return costs.back() * std::clamp(costs.back() / costs[costs.size() - 2], 1.0, fastest_growth);
   }
 
   struct Line {
     const Knob* knob;
-    std::vector<std::size_t> runs;
+    std::vector<std::size_t> runs;               ///< in the order of the values
+    std::map<std::size_t, std::size_t> of_value; ///< the run of a value, by its place
     std::vector<std::string> skipped;
     bool ended = false; ///< dearer values would not fit either
   };
 
-  bool single(Line& line, const KnobValue& value, double reserve) {
+  MeasuredRun run_of(const Knob& knob, const KnobValue& value) const {
     MeasuredRun run;
-    run.name = value.own ? own_name : line.knob->name + "-" + value.text;
-    run.setting.knob = line.knob->name;
+    run.setting.knob = knob.name;
     run.setting.value = value.text;
-    run.setting.overrides = value.overrides;
-    std::sort(run.setting.overrides.begin(), run.setting.overrides.end());
-    const bool known = std::any_of(trade_.runs.begin(), trade_.runs.end(),
-                                   [&](const MeasuredRun& other) { return other.name == run.name; });
+    if (start_ == 0 || knob.is_of_several_keys) {
+      run.name = value.own ? own_name : knob.name + "-" + value.text;
+      run.setting.overrides = value.own ? Overrides() : with_value({}, knob, value, knobs_, own().setting.method);
+      return run;
+    }
+    const std::string& method = own().setting.method;
+    const std::string wanted = value.own ? method : method_of(value.overrides, method);
+    run.setting.overrides = with_value(cheapest(knobs_, wanted), knob, value, knobs_, method);
+    run.name = run.setting.overrides == start().setting.overrides
+                   ? std::string(cheap_name)
+                   : std::string(cheap_name) + "_" + knob.name + "-" + value.text;
+    return run;
+  }
+
+  bool single(Line& line, std::size_t place, double reserve) {
+    const KnobValue& value = line.knob->values[place];
+    const MeasuredRun run = run_of(*line.knob, value);
     const double room = world_.left() - reserve;
-    if (!known && (line.ended || next_cost(line.runs) > std::min(room, longest_))) {
+    if (!is_known(run) && (line.ended || cost_of(run, next_seconds(line.runs)) > std::min(room, longest_))) {
       line.skipped.push_back(value.text);
       return true;
     }
     const std::size_t at = place_of(run);
     if (!once(at, std::min(world_.left(), longest_))) return false;
     line.runs.push_back(at);
+    line.of_value[place] = at;
     line.ended = line.ended || (!trade_.runs[at].refused.empty() && line.knob->falls);
     return true;
   }
@@ -121,14 +150,24 @@ private:
   bool singles() {
     const double reserve = (1.0 - options_.singles_share) * world_.left();
     for (const Knob& knob : knobs_)
-      lines_.push_back({&knob, {}, {}, false});
+      lines_.push_back({&knob, {}, {}, {}});
     std::size_t most = 0;
-    for (const Knob& knob : knobs_)
-      most = std::max(most, knob.values.size());
+    for (Line& line : lines_) {
+      most = std::max(most, line.knob->values.size());
+      if (costs_little(*line.knob))
+        for (std::size_t v = 0; v < line.knob->values.size(); ++v)
+          if (!single(line, v, reserve)) return false;
+    }
     for (std::size_t v = 0; v < most; ++v)
       for (Line& line : lines_)
-        if (v < line.knob->values.size() && !single(line, line.knob->values[v], reserve)) return false;
+        if (v < line.knob->values.size() && !costs_little(*line.knob) && !single(line, v, reserve)) return false;
     return true;
+  }
+
+  bool costs_little(const Knob& knob) const {
+    return world_.kept && std::all_of(knob.values.begin(), knob.values.end(), [&](const KnobValue& value) {
+             return value.own || world_.kept(run_of(knob, value)) > 0.0;
+           });
   }
 
   /// How much a run is beaten by, as a factor's logarithm: the least that both of its figures must fall by until no
@@ -144,48 +183,54 @@ private:
 
   struct Candidate {
     MeasuredRun run;
-    double seconds = 0.0, rank = 0.0;
+    double seconds = 0.0, error = 0.0; ///< foretold
+    double rank = 0.0;
   };
 
-  /// Two settings together: what each saves in time is saved, what each adds to the error is added.
-  std::optional<Candidate> combined(const MeasuredRun& a, const MeasuredRun& b) const {
-    const MeasuredRun& own = trade_.runs.front();
-    const auto overrides = together(a.setting.overrides, b.setting.overrides);
-    if (!overrides || *overrides == a.setting.overrides || *overrides == b.setting.overrides) return std::nullopt;
+  /// What the run of a value showed, against that of the value that a setting has; absent: not measured.
+  const MeasuredRun* shown(const Line& line, std::optional<std::size_t> value) const {
+    const auto at = value ? line.of_value.find(*value) : line.of_value.end();
+    const MeasuredRun& run = at == line.of_value.end() ? start() : trade_.runs[at->second];
+    return run.refused.empty() ? &run : nullptr;
+  }
+
+  /// The setting of a run with another value of a knob: the time and the error change by what the knob alone has shown.
+  std::optional<Candidate> moved(const MeasuredRun& from, const Line& line, std::size_t place) const {
+    const Knob& knob = *line.knob;
+    const KnobValue& value = knob.values[place];
+    const std::string& method = own().setting.method;
+    if (!goes_with(from.setting.overrides, knob, value, method)) return std::nullopt;
+    const MeasuredRun *after = shown(line, place), *before = shown(line, value_in(from.setting.overrides, knob));
+    if (line.of_value.count(place) == 0 || after == nullptr || before == nullptr) return std::nullopt;
     Candidate candidate;
-    for (const std::string& one : *overrides) {
-      const std::string key = key_of(one);
-      candidate.run.name += (candidate.run.name.empty() ? "" : "_") + key.substr(key.rfind('.') + 1) + "-" +
-                            one.substr(one.find('=') + 1);
-    }
-    candidate.run.setting.overrides = *overrides;
-    candidate.seconds = std::max(1e-6, seconds_of(a) * seconds_of(b) / seconds_of(own));
-    // Where both are better than the scene's own, the sum of the gains would be below what is possible.
-    const double error = std::max(error_of(a) + error_of(b) - error_of(own), 0.5 * std::min(error_of(a), error_of(b)));
-    candidate.rank = std::max(std::log(candidate.seconds / seconds_of(own)), std::log(error / error_of(own))) < 0.0
-                         ? -1.0 // better than the scene's own in both
-                         : behind(candidate.seconds, error);
+    candidate.run.setting.overrides = with_value(from.setting.overrides, knob, value, knobs_, method);
+    candidate.run.name = name_of_overrides(candidate.run.setting.overrides);
+    constexpr double least_left = 0.3; // of a sum that would be less
+    candidate.seconds =
+        std::max(seconds_of(from) + seconds_of(*after) - seconds_of(*before), least_left * seconds_of(from));
+    candidate.error = std::max(error_of(from) + error_of(*after) - error_of(*before), least_left * error_of(from));
+    candidate.rank = behind(candidate.seconds, candidate.error);
     return candidate;
   }
 
   std::vector<Candidate> candidates() const {
     // Logarithms: a quarter slower and less accurate than the front; twice so, by what is foretold.
     constexpr double near = 0.25, hopeless = 0.7;
-    std::vector<const MeasuredRun*> parents, singles;
-    std::set<std::string> names;
-    for (const MeasuredRun& run : trade_.runs) {
-      names.insert(run.name);
-      if (!run.refused.empty() || run.name == own_name) continue;
-      if (behind(run) <= near) parents.push_back(&run);
-      if (!run.setting.knob.empty()) singles.push_back(&run);
-    }
+    std::set<Overrides> known;
+    for (const MeasuredRun& run : trade_.runs)
+      known.insert(run.setting.overrides);
     std::vector<Candidate> all;
-    for (const MeasuredRun* parent : parents)
-      for (const MeasuredRun* single : singles)
-        if (auto candidate = combined(*parent, *single);
-            candidate && candidate->rank <= hopeless && names.insert(candidate->run.name).second)
-          all.push_back(*candidate);
-    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.rank < b.rank; });
+    for (const MeasuredRun& from : trade_.runs) {
+      if (!from.refused.empty() || behind(from) > near) continue;
+      for (const Line& line : lines_)
+        for (std::size_t v = 0; v < line.knob->values.size() && !line.knob->is_of_several_keys; ++v)
+          if (auto candidate = moved(from, line, v);
+              candidate && candidate->rank <= hopeless && known.insert(candidate->run.setting.overrides).second)
+            all.push_back(*candidate);
+    }
+    std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+      return a.rank != b.rank ? a.rank < b.rank : cost_of(a.run, a.seconds) < cost_of(b.run, b.seconds);
+    });
     if (all.size() > options_.candidates) all.resize(options_.candidates);
     return all;
   }
@@ -210,7 +255,7 @@ private:
     for (;;) {
       std::vector<std::size_t> places;
       for (const Candidate& candidate : candidates()) {
-        if (candidate.seconds > std::min(world_.left() - reserve, longest_)) continue;
+        if (cost_of(candidate.run, candidate.seconds) > std::min(world_.left() - reserve, longest_)) continue;
         const std::size_t at = place_of(candidate.run);
         if (!once(at, std::min(world_.left(), longest_))) return false;
         if (trade_.runs[at].refused.empty()) places.push_back(at);
@@ -240,6 +285,7 @@ private:
     trade_.knobs.clear();
     for (const Line& line : lines_) {
       KnobCurve curve{line.knob->name, {}, line.knob->falls, {}};
+      if (start_ != 0 && line.knob->left_out.empty() && !line.knob->is_of_several_keys) curve.about = start().name;
       for (const std::size_t at : line.runs)
         curve.runs.push_back(trade_.runs[at].name);
       curve.finding = finding_of(trade_, *line.knob, curve, line.skipped);
@@ -252,6 +298,7 @@ private:
   const SearchWorld& world_;
   const SearchOptions& options_;
   double longest_ = std::numeric_limits<double>::infinity();
+  std::size_t start_ = 0; ///< the run about which knobs are turned
   std::vector<Line> lines_;
 };
 
@@ -272,38 +319,6 @@ Estimate estimate_of_repeats(std::vector<double> seconds) {
   const std::size_t half = seconds.size() / 2;
   const double median = seconds.size() % 2 == 1 ? seconds[half] : 0.5 * (seconds[half - 1] + seconds[half]);
   return {median, seconds.front(), seconds.back()};
-}
-
-std::string finding_of(const Trade& trade, const Knob& knob, const KnobCurve& curve,
-                       const std::vector<std::string>& skipped) {
-  if (!knob.left_out.empty()) return knob.left_out;
-  std::vector<const MeasuredRun*> measured;
-  for (const std::string& name : curve.runs)
-    for (const MeasuredRun& run : trade.runs)
-      if (run.name == name && run.refused.empty()) measured.push_back(&run);
-  std::string text;
-  bool rises = false, falls = false;
-  for (std::size_t i = 1; i < measured.size(); ++i) {
-    const Estimate &before = measured[i - 1]->error, &after = measured[i]->error;
-    falls = falls || after.high < before.low;
-    if (after.low <= before.high) continue;
-    rises = true;
-    text += fmt::format("{}the error rises from {} to {}", text.empty() ? "" : "; ", measured[i - 1]->name,
-                        measured[i]->name);
-  }
-  if (measured.size() < 2)
-    text = "too few values were measured to tell";
-  else if (!rises)
-    text = falls ? "falls" : "the error stays the same to within its interval: others outweigh what this knob changes";
-  else if (knob.falls)
-    text += ", against theory";
-  if (!knob.falls || rises || !falls) text += ". " + knob.theory;
-  std::string list;
-  for (const std::string& value : skipped)
-    list += (list.empty() ? "" : ", ") + value;
-  if (!list.empty())
-    text += (text.back() == '.' ? " " : "; ") + std::string("not measured, the budget being too small: ") + list;
-  return text;
 }
 
 } // namespace pointgi

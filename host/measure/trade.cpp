@@ -76,19 +76,19 @@ std::string command_of(const Trade& trade, const MeasuredRun& run) {
 }
 
 std::string csv_of(const Trade& trade) {
-  std::string text =
-      "name,knob,value,method,overrides,cold,repeats,seconds,seconds_low,seconds_high,memory_bytes,error,"
-      "error_low,error_high,bias,ssim,on_front,refused\n";
+  std::string text = "name,knob,value,method,overrides,samples,repeats,seconds,seconds_low,seconds_high,warm_seconds,"
+                     "memory_bytes,error,"
+                     "error_low,error_high,noise,bias,ssim,on_front,refused\n";
   for (const MeasuredRun& run : trade.runs) {
     std::string overrides;
     for (const std::string& one : run.setting.overrides)
       overrides += (overrides.empty() ? "" : " ") + one;
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{}\n",
-                    csv_field(run.name), csv_field(run.setting.knob), csv_field(run.setting.value),
-                    csv_field(run.setting.method), csv_field(overrides), run.cold ? 1 : 0, run.repeats.size(),
-                    run.seconds.value, run.seconds.low, run.seconds.high, run.memory_bytes, run.error.value,
-                    run.error.low, run.error.high, run.bias, run.ssim, run.on_front ? 1 : 0, csv_field(run.refused));
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{}\n",
+        csv_field(run.name), csv_field(run.setting.knob), csv_field(run.setting.value), csv_field(run.setting.method),
+        csv_field(overrides), run.samples, run.repeats.size(), run.seconds.value, run.seconds.low, run.seconds.high,
+        run.warm_seconds, run.memory_bytes, run.error.value, run.error.low, run.error.high, run.noise, run.bias,
+        run.ssim, run.on_front ? 1 : 0, csv_field(run.refused));
   }
   return text;
 }

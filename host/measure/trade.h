@@ -1,6 +1,7 @@
 #pragma once
 /// What a measurement of speed against accuracy holds: the runs, and the reference that they are compared with.
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,18 +22,22 @@ struct Estimate {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// One setting, measured. Times are of a process that has its kernels; a run is cold where the visibility map was made
-/// anew and warm where it was kept.
+/// One setting, measured. Times are of a process that has its kernels. Light that differs from another run's in
+/// render.spp alone was solved once for both, and its seconds count in both.
 struct MeasuredRun {
   std::string name; ///< unique, usable in a file name: "directions-64"
   Setting setting;
-  bool cold = true;
-  std::vector<double> repeats;          ///< seconds of each repetition, from the prepared cloud to the picture
+  int samples = 1;                      ///< a pixel
+  std::vector<double> repeats;          ///< seconds of each repetition, from the prepared cloud to the picture, cold:
+                                        ///< with a visibility map made anew
   Estimate seconds;                     ///< median of `repeats`, the least and the greatest of them
   std::map<std::string, double> stages; ///< seconds of each stage, of the median repetition
   std::uint64_t memory_bytes = 0;       ///< device_peak_bytes of the run
   Estimate error;                       ///< relMSE against the reference, whose own noise is taken off; low may be < 0
-  double bias = 0.0;                    ///< of the mean, relative
+  double noise = std::numeric_limits<double>::infinity(); ///< of `error`, what the pixels' variances tell; infinite: of
+                                                          ///< one sample nothing is known
+  double warm_seconds = 0.0; ///< of one more run, with a kept visibility map; 0: not measured
+  double bias = 0.0;         ///< of the mean, relative
   double ssim = 0.0;
   std::string picture;   ///< file beside trade.json, "pictures/directions-64.png"
   bool on_front = false; ///< no other run is both faster and more accurate
@@ -45,6 +50,7 @@ struct KnobCurve {
   std::vector<std::string> runs; ///< names, in the order of the values
   bool falls = false;            ///< theory says that the error falls along them
   std::string finding;           ///< "falls", or where it does not and why, for the reader; without runs, why not
+  std::string about = {};        ///< the run whose other settings they have; empty: the scene's own
 };
 
 struct TradeReference {
@@ -60,6 +66,7 @@ struct Trade {
   std::string state;                        ///< hash of the files of the scene, by which a resumed one is known
   int width = 0, height = 0;
   double budget_seconds = 0.0, spent_seconds = 0.0;
+  double prepare_seconds = 0.0; ///< of loading the clouds and building the octree, which no run's seconds hold
   TradeReference reference;
   std::vector<MeasuredRun> runs;
   std::vector<KnobCurve> knobs;

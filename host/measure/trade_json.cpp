@@ -37,12 +37,14 @@ json object_of(const MeasuredRun& run) {
             {"knob", run.setting.knob},
             {"value", run.setting.value},
             {"method", run.setting.method}}},
-          {"cold", run.cold},
+          {"samples", run.samples},
           {"repeats", numbers(run.repeats)},
           {"seconds", object_of(run.seconds)},
           {"stages", stages},
           {"memory_bytes", run.memory_bytes},
           {"error", object_of(run.error)},
+          {"noise", number(run.noise)},
+          {"warm_seconds", number(run.warm_seconds)},
           {"bias", number(run.bias)},
           {"ssim", number(run.ssim)},
           {"picture", run.picture},
@@ -51,7 +53,11 @@ json object_of(const MeasuredRun& run) {
 }
 
 json object_of(const KnobCurve& knob) {
-  return {{"knob", knob.knob}, {"runs", knob.runs}, {"falls", knob.falls}, {"finding", knob.finding}};
+  return {{"knob", knob.knob},
+          {"runs", knob.runs},
+          {"falls", knob.falls},
+          {"finding", knob.finding},
+          {"about", knob.about}};
 }
 
 /// A place in the file that is read, by which errors name it: "runs.3.error".
@@ -87,6 +93,11 @@ public:
     const std::uint64_t pixels = count();
     require(pixels >= 1 && pixels <= 65536, "a number of pixels from 1 to 65536");
     return static_cast<int>(pixels);
+  }
+  int samples() const {
+    const std::uint64_t samples = count();
+    require(samples >= 1 && samples <= 65536, "a number of samples from 1 to 65536");
+    return static_cast<int>(samples);
   }
   Estimate estimate() const { return {(*this)["value"].number(), (*this)["low"].number(), (*this)["high"].number()}; }
   template <typename Of>
@@ -124,12 +135,14 @@ MeasuredRun run_of(const Reader& in) {
   run.name = in["name"].text();
   run.setting = {setting["overrides"].texts(), setting["knob"].text(), setting["value"].text(),
                  setting["method"].text()};
-  run.cold = in["cold"].flag();
+  run.samples = in["samples"].samples();
   run.repeats = in["repeats"].list([](const Reader& one) { return one.number(); });
   run.seconds = in["seconds"].estimate();
   run.stages = in["stages"].by_name();
   run.memory_bytes = in["memory_bytes"].count();
   run.error = in["error"].estimate();
+  run.noise = in["noise"].number();
+  run.warm_seconds = in["warm_seconds"].number();
   run.bias = in["bias"].number();
   run.ssim = in["ssim"].number();
   run.picture = in["picture"].text();
@@ -139,7 +152,7 @@ MeasuredRun run_of(const Reader& in) {
 }
 
 KnobCurve knob_of(const Reader& in) {
-  return {in["knob"].text(), in["runs"].texts(), in["falls"].flag(), in["finding"].text()};
+  return {in["knob"].text(), in["runs"].texts(), in["falls"].flag(), in["finding"].text(), in["about"].text()};
 }
 
 Trade trade_of(const Reader& in) {
@@ -155,6 +168,7 @@ Trade trade_of(const Reader& in) {
   trade.height = in["height"].side();
   trade.budget_seconds = in["budget_seconds"].number();
   trade.spent_seconds = in["spent_seconds"].number();
+  trade.prepare_seconds = in["prepare_seconds"].number();
   trade.reference = {reference["source"].text(), reference["picture"].text(), reference["own_noise"].number(),
                      reference["seconds"].number()};
   trade.runs = in["runs"].list(run_of);
@@ -175,6 +189,7 @@ std::string json_of(const Trade& trade) {
               {"height", trade.height},
               {"budget_seconds", number(trade.budget_seconds)},
               {"spent_seconds", number(trade.spent_seconds)},
+              {"prepare_seconds", number(trade.prepare_seconds)},
               {"reference",
                {{"source", trade.reference.source},
                 {"picture", trade.reference.picture},

@@ -79,6 +79,17 @@ TileSeconds TileRenderer::launch(int x, int y, int columns, int rows, pg_uint fi
   return seconds;
 }
 
+void TileRenderer::set_samples(pg_uint samples) {
+  if (params_.samples == samples) return;
+  params_.samples = samples;
+  session_.write(lights_.params, &params_, 1);
+}
+
+void TileRenderer::go_on_from(const std::vector<float>& film) {
+  if (film_.size < film.size()) film_ = session_.allocate<float>(film.size());
+  session_.write(film_, film.data(), film.size());
+}
+
 std::vector<EyeHits> TileRenderer::hits(int columns, int rows) {
   return session_.download(hits_, static_cast<std::size_t>(columns) * rows);
 }

@@ -31,6 +31,12 @@ public:
 
   pg_uint samples() const { return params_.samples; }
 
+  /// From the next launch on: how many samples a pixel has in all, which the last pass is laid out by.
+  void set_samples(pg_uint samples);
+
+  /// The next launch adds to this film of a tile of as many pixels, film_channels() scalars each.
+  void go_on_from(const std::vector<float>& film);
+
   /// One pass of up to 32 samples over a tile of the image; returns the device's seconds.
   TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
 

@@ -1,9 +1,7 @@
 #include "host/stages/prepared_scene.h"
 #include "host/passes/build_pools.h"
 #include "host/run.h"
-#include "host/scene/limits.h"
 #include <algorithm>
-#include <cmath>
 
 namespace pointgi {
 
@@ -58,23 +56,6 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   stages.finish(ready.octree.nodes, "nodes");
   ready.lighting = device_lighting(scene, ready.frame, ready.points, clips);
   return ready;
-}
-
-void apply_quality(const std::string& quality, Scene& scene, bool samples_given) {
-  if (quality == "normal") return;
-  const bool draft = quality == "draft";
-  if (!samples_given)
-    scene.render.spp = std::max(1, static_cast<int>(std::lround(scene.render.spp * (draft ? 0.25 : 4.0))));
-  int& directions = scene.radiosity.directions;
-  directions = draft ? (directions + 1) / 2 : std::min(2 * directions, static_cast<int>(limits::directions.high));
-  double& epsilon = scene.radiosity.epsilon;
-  epsilon = draft ? std::max(epsilon, std::min(4.0 * epsilon, limits::coarsest_draft_epsilon)) : 0.5 * epsilon;
-}
-
-void apply_bake_quality(const std::string& quality, Scene& scene) {
-  apply_quality(quality, scene);
-  if (!scene.radiosity.light_samples)
-    scene.radiosity.light_samples = quality == "draft" ? 16 : quality == "high" ? 256 : 64;
 }
 
 } // namespace pointgi

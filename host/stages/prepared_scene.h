@@ -26,13 +26,4 @@ struct PreparedScene {
 /// builds, uploads. `bare`: the scene stands around a bare cloud. Throws what these do.
 PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog& stages);
 
-/// --quality, a picture's noise and the exchange's error together: "draft" is a quarter of the scene's samples a pixel,
-/// unless `samples_given` with the command, and four times its radiosity.epsilon, but no more than
-/// limits::coarsest_draft_epsilon, and half of radiosity.directions; "high" four times, half, and twice.
-void apply_quality(const std::string& quality, Scene& scene, bool samples_given = false);
-
-/// --quality of a lit cloud, which shows the direct light of its points: besides, radiosity.light_samples is 16, 64 or
-/// 256 where the scene leaves it open.
-void apply_bake_quality(const std::string& quality, Scene& scene);
-
 } // namespace pointgi

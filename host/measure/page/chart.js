@@ -83,7 +83,7 @@ function errorBar(x, y, domain, error) {
 /// One run: its bars, its mark, and what a screen reader says. `bars`: SVG text.
 function runMark(run, x, y, size, bars, kind) {
   const words = `${run.name}: ${seconds(run.seconds.value)}, error ${errorText(run.error)}, ${settingsText(run)}`;
-  return `<g class="run ${kind} ${run.cold ? "" : "warm"}" data-run="${esc(run.name)}" style="--c:${methodColour(run)}" ` +
+  return `<g class="run ${kind}" data-run="${esc(run.name)}" style="--c:${methodColour(run)}" ` +
     `role="button" tabindex="-1" aria-label="${esc(words)}">${bars}` +
     `<circle class="halo" cx="${r(x)}" cy="${r(y)}" r="${size + 5}"/>` +
     `<circle cx="${r(x)}" cy="${r(y)}" r="${size + 6}" fill="transparent"/>` +

@@ -94,7 +94,7 @@ function showDetail(run) {
   if (!run) return;
   byId("detail").innerHTML = `<strong>${esc(run.name)}</strong> (${esc(run.setting.method)}): ${seconds(run.seconds.value)} ` +
     `(${secondsRange(run.seconds)}), error ${errorWithRange(run.error)}, bias ${percent(run.bias)}, ` +
-    `SSIM ${similarity(run.ssim)}, ${bytes(run.memory_bytes)}, visibility map ${mapText(run)}.<br>` +
+    `SSIM ${similarity(run.ssim)}, ${bytes(run.memory_bytes)}.${warmText(run) ? ` With a kept visibility map ${warmText(run)}.` : ""}<br>` +
     `<code>${esc(settingsText(run))}</code>`;
   for (const mark of document.querySelectorAll(".run[data-run]"))
     mark.classList.toggle("shown", mark.dataset.run === run.name);

@@ -5,7 +5,7 @@ function drawKnobs() {
   const box = byId("knobs"), curves = trade.knobs.filter(curve => curve.runs.length), left = trade.knobs.filter(curve => !curve.runs.length);
   if (curves.length && box.children.length === 0)
     box.innerHTML = curves.map(curve => `<article class="knob" data-knob="${esc(curve.knob)}">` +
-      `<h3>${esc(curve.knob)}</h3><div class="plot"></div>` +
+      `<h3>${esc(curve.knob)}${curve.about ? ` <small>about ${esc(curve.about)}</small>` : ""}</h3><div class="plot"></div>` +
       `<p class="${curve.falls && !fallsAsItShould(curve) ? "amiss" : ""}">${esc(findingText(curve))}</p></article>`).join("");
   [...box.querySelectorAll(".knob")].forEach((article, i) => {
     const plot = article.querySelector(".plot");

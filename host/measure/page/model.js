@@ -9,9 +9,7 @@ const runs = trade.runs, measured = runs.filter(run => !run.refused);
 const runNamed = name => runs.find(run => run.name === name);
 const byId = id => document.getElementById(id);
 
-/// The scene's own setting; where it was measured twice, the run that made its visibility map.
-const own = measured.find(run => run.setting.overrides.length === 0 && run.cold) ||
-  measured.find(run => run.setting.overrides.length === 0);
+const own = measured.find(run => run.setting.overrides.length === 0);
 const front = measured.filter(run => run.on_front).sort((a, b) => a.seconds.value - b.seconds.value);
 
 /// Text as HTML shows it.
@@ -37,7 +35,8 @@ const errorRange = error => !isTold(error) ? "" : error.low > 0 ? `${figure(erro
 const errorWithRange = error => errorText(error) + (isTold(error) ? ` (${errorRange(error)})` : "");
 const secondsRange = time => `${figure(time.low)} to ${figure(time.high)}`;
 const settingsText = run => run.setting.overrides.length ? run.setting.overrides.join("  ") : "the scene’s own setting";
-const mapText = run => run.cold ? "made anew" : "kept from before";
+/// Seconds with a visibility map that an earlier run has kept; empty where it was not measured.
+const warmText = run => run.warm_seconds > 0 ? seconds(run.warm_seconds) : "";
 
 /// The same choice as fastest_within_error and most_accurate_within of host/measure/trade.h; undefined: no run.
 const fastestWithinError = error => least(measured.filter(run => run.error.value <= error), run => run.seconds.value);

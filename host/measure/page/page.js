@@ -21,7 +21,8 @@ function drawHead() {
       "The interval holds the error in 95 of 100 measurements."],
     ["bias", "Difference of the mean of the picture from the mean of the reference, relative."],
     ["SSIM", "Structural similarity with the reference; 1 is the same."],
-    ["map", "Whether the visibility map was made anew in the run or kept from an earlier one. Hollow marks are of kept maps."],
+    ["seconds, kept map", "Of one more run with the visibility map of an earlier one, where that took much of the time: a second picture of the same scene. The column seconds " +
+      "is of runs that made the map anew."],
     ["memory", "The most that was in use on the device at a time."],
   ];
   byId("terms").innerHTML = terms.map(([title, words]) => `<dt>${title}</dt><dd>${words}</dd>`).join("");

@@ -12,7 +12,7 @@ function drawBest() {
     front.map((run, i) => `<tr ${dataOf(run)}><td class="figure">${i + 1}</td>${nameCell(run)}` +
       cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
       cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) +
-      `<td class="settings">${run.cold ? "" : "visibility map kept; "}<code>${esc(settingsText(run))}</code></td></tr>`).join("") + "</tbody>";
+      `<td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`).join("") + "</tbody>";
 }
 
 function drawStages() {
@@ -47,7 +47,7 @@ const columns = [
   ["bias", "bias", true, run => Math.abs(run.bias)],
   ["ssim", "SSIM", true, run => -run.ssim],
   ["memory", "memory", true, run => run.memory_bytes],
-  ["map", "map", false, run => mapText(run)],
+  ["warm", "seconds, kept map", true, run => run.warm_seconds || Infinity],
   ["settings", "settings", false, run => settingsText(run)],
 ];
 
@@ -61,7 +61,7 @@ function drawAll() {
     `${name === key ? ` aria-sort="${down ? "descending" : "ascending"}"` : ""}><button type="button" data-sort="${name}">${title}</button></th>`);
   const row = run => `<tr ${dataOf(run)} class="${run.name === state.select ? "selected" : ""}">${nameCell(run)}${methodCell(run)}` +
     cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
-    cell(percent(run.bias)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) + `<td>${run.cold ? "anew" : "kept"}</td>` +
+    cell(percent(run.bias)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) + cell(warmText(run)) +
     `<td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
   const refused = run => `<tr data-refused="${esc(run.name)}"><td class="name">${esc(run.name)}</td><td>${esc(run.setting.method)}</td>` +
     `<td colspan="6">not run: ${esc(run.refused)}</td><td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;

@@ -22,7 +22,7 @@ function drawWant() {
 function recommendation(run, key, limit) {
   const doubt = run[key].high > limit
     ? ` Its interval reaches ${figure(run[key].high)}${key === "seconds" ? " s" : ""}, which is more than you asked for.` : "";
-  const kept = run.cold ? "" : " The visibility map was kept from an earlier run; a first run takes longer.";
+  const kept = warmText(run) ? ` A second picture takes ${warmText(run)}: the visibility map is kept.` : "";
   return `<p>${pick(run)}: ${seconds(run.seconds.value)}, error ${errorWithRange(run.error)}, ` +
     `${bytes(run.memory_bytes)}.${doubt}${kept}</p>` +
     `<div class="command"><code>${unbroken(commands[run.name] || "")}</code>` +

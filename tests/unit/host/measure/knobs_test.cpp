@@ -1,4 +1,5 @@
 /// Knobs are keys that scenes have, with values that scenes take.
+#include "host/measure/finding.h"
 #include "host/measure/knobs.h"
 #include "host/measure/search.h"
 #include "tests/unit/host/scene/scene_files.h"
@@ -95,5 +96,5 @@ TEST_CASE("a knob that is not there is answered with the nearest and with all") 
   CHECK(checked_knob("radiosity.directions") == "directions");
   CHECK(checked_knob("directions") == "directions");
   CHECK_THAT(error_of("direction"), Contains("did you mean \"directions\"") && Contains("spp, method"));
-  CHECK_THAT(error_of("zzz"), Contains("the knobs are: spp"));
+  CHECK_THAT(error_of("zzz"), Contains("the knobs are: quality, spp"));
 }

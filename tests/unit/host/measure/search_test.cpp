@@ -1,4 +1,5 @@
 /// The order of measurements, driven by a model whose times and errors are known.
+#include "host/measure/finding.h"
 #include "host/measure/search.h"
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,0 +1,31 @@
+#pragma once
+/// Which setting --time and --error ask for, and what a picture will take and be, known before it begins.
+#include "host/app/commands.h"
+#include "host/app/grow_picture.h"
+#include "host/measure/trade.h"
+
+namespace pointgi {
+
+struct ChosenSetting {
+  std::vector<std::string> overrides; ///< of the scene's settings, but for render.spp
+  PictureGoal goal;
+  double seconds = 0.0, error = 0.0; ///< expected, from the prepared cloud on
+  std::string told;                  ///< what it is, and why, in a sentence
+};
+
+/// What was measured of the scene: --trade's, else what is kept of it on this device, unless its files have changed
+/// since, which the log hears. Throws Error(input) for a --trade that cannot be read.
+std::optional<Trade> trade_for(const RenderOptions& options, const std::string& device);
+
+/// By the trade, for `pixels` pixels; `begun`: seconds that the command has taken already. Settings that ask for a key
+/// that `own_overrides` have are none to choose from. Absent: the trade has none.
+std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOptions& options,
+                                             const std::vector<std::string>& own_overrides, double pixels,
+                                             double begun);
+
+/// What the trade says of a picture by `overrides`, none of them render.spp, of `samples` samples a pixel; absent: it
+/// was not measured.
+std::optional<ChosenSetting> forecast_of(const Trade& trade, const std::vector<std::string>& overrides, int samples,
+                                         double pixels);
+
+} // namespace pointgi

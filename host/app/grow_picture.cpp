@@ -1,0 +1,165 @@
+#include "host/app/grow_picture.h"
+#include "host/run.h"
+#include "host/scene/limits.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pointgi {
+
+namespace {
+
+constexpr int pass = GRID_RAYS;
+const int most_samples = static_cast<int>(limits::spp.high);
+
+/// A picture between is written where that takes at most this share of the time since the last.
+constexpr double share_of_writing = 0.1;
+
+/// As far as passes go on bit for bit: whole ones, but for the first when it is less than one.
+int whole_passes(double samples) {
+  if (samples < pass) return static_cast<int>(samples);
+  return static_cast<int>(std::min<double>(samples, most_samples)) / pass * pass;
+}
+
+double needed_samples(const PictureGoal& goal, int now, double noise) {
+  const double allowed = *goal.error - goal.light_error;
+  if (!(allowed > 0.0)) return most_samples; // as good as there is time for
+  const double of_one = now == 0 ? goal.noise_a_sample : goal.noise_factor * noise * now;
+  if (!std::isfinite(of_one)) return 2.0 * now;
+  return std::ceil(of_one / allowed);
+}
+
+} // namespace
+
+int next_samples(const PictureGoal& goal, int now, double left, double noise) {
+  if (!goal.is_open()) return std::min(goal.samples, now == 0 ? pass : 2 * now);
+  double wanted = most_samples;
+  if (goal.error) {
+    const double needed = needed_samples(goal, now, noise);
+    if (needed <= now && now > 0) return now;
+    // A forecast of the noise may be off; what was measured is not.
+    wanted = needed < pass ? std::max(1.0, needed) : pass * std::ceil(needed / pass);
+  }
+  wanted = std::min(wanted, now == 0 ? std::max<double>(pass, 0.25 * wanted) : 2.0 * std::max(now, pass));
+  if (!goal.until) return std::max(now, whole_passes(wanted));
+  const double affordable = now + (goal.seconds_a_sample > 0.0 ? std::max(0.0, left) / goal.seconds_a_sample : pass);
+  if (affordable >= wanted) return std::max(now, whole_passes(wanted));
+  if (now == 0) return std::max(1, affordable < 2 * pass ? static_cast<int>(affordable) : whole_passes(affordable));
+  return static_cast<int>(affordable); // the last pass
+}
+
+double relative_noise(const GrowingFilm& film) {
+  // The channels' order is that of film_channels(): R, G, B are the first, the variances follow Z.
+  constexpr std::size_t first_variance = 17;
+  constexpr double part_of_mean = 0.01; // as relMSE has it (host/image/difference.h)
+  double sum = 0.0, values = 0.0;
+  film.resolve([&](const Band& band) {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const float value : band.values[k])
+        sum += value, values += 1.0;
+  });
+  const double mean = sum / std::max(1.0, values), eps = mean > 0.0 ? part_of_mean * mean * mean : part_of_mean;
+  double noise = 0.0;
+  film.resolve([&](const Band& band) {
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < band.values[k].size(); ++i)
+        noise += band.values[first_variance + k][i] / (double{band.values[k][i]} * band.values[k][i] + eps);
+  });
+  return noise / std::max(1.0, values);
+}
+
+namespace {
+
+/// The film, its samples and what they cost.
+class Growth {
+public:
+  Growth(api::Context::Parts& context, api::FilmJob& job, PictureGoal goal, PictureOutput& output)
+      : context_(context), job_(job), goal_(goal), output_(output),
+        film_(std::make_unique<GrowingFilm>(job.growing())) {}
+
+  GrownPicture run() {
+    context_.stages.start("render");
+    double noise = std::numeric_limits<double>::infinity();
+    for (int now = 0; !stop_asked();) {
+      const int next = next_samples(goal_, now, left(), noise);
+      if (next <= now) break;
+      // Of less than a pass nothing is kept: its samples lie otherwise in the pixel than those of a whole one.
+      if (now % pass != 0) film_ = std::make_unique<GrowingFilm>(job_.growing());
+      grow(now % pass != 0 ? 0 : now, next);
+      now = static_cast<int>(film_->samples());
+      if (now < next) break; // interrupted, or the time is over
+      if (goal_.error) noise = relative_noise(*film_);
+      if (worth_writing(next)) write();
+    }
+    context_.stages.finish(rays(), "rays", film_->device_seconds());
+    return last();
+  }
+
+private:
+  double now_seconds() const { return context_.stages.seconds(); }
+  double left() const {
+    return goal_.until ? *goal_.until - now_seconds() - output_.seconds_to_write() : std::numeric_limits<double>::max();
+  }
+
+  void grow(int from, int to) {
+    const double begun = now_seconds();
+    film_->grow(
+        static_cast<pg_uint>(to), [&](double share) { report_progress(overall(from + share * (to - from))); },
+        [&] { return stop_asked() || (from > 0 && left() < 0.0); });
+    if (static_cast<int>(film_->samples()) == to) goal_.seconds_a_sample = (now_seconds() - begun) / (to - from);
+  }
+
+  /// Share of the whole, as far as it is known.
+  double overall(double samples) const {
+    if (goal_.until) return std::min(1.0, now_seconds() / *goal_.until);
+    return std::min(1.0, samples / std::max(1, goal_.samples));
+  }
+
+  bool worth_writing(int samples) const {
+    const bool last = !goal_.is_open() && samples >= goal_.samples;
+    return !last &&
+           (!output_.written() || output_.seconds_to_write() < share_of_writing * (now_seconds() - written_at_));
+  }
+
+  void write() {
+    job_.set_samples(static_cast<int>(film_->samples()));
+    output_.write(job_, *film_, now_seconds());
+    written_at_ = now_seconds();
+  }
+
+  std::uint64_t rays() const {
+    return film_->resolve([](const Band&) {}).rays;
+  }
+
+  GrownPicture last() {
+    GrownPicture grown;
+    grown.totals = film_->resolve([](const Band&) {});
+    grown.totals.interrupted = stop_asked();
+    grown.samples = static_cast<int>(film_->samples());
+    grown.noise = relative_noise(*film_);
+    if (grown.samples == 0) return grown;
+    const RunControl to_the_end{}; // what is there is kept
+    const RunScope scope(to_the_end);
+    context_.stages.start("image");
+    write();
+    const PixelWindow& w = job_.window();
+    context_.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
+    return grown;
+  }
+
+  api::Context::Parts& context_;
+  api::FilmJob& job_;
+  PictureGoal goal_;
+  PictureOutput& output_;
+  std::unique_ptr<GrowingFilm> film_;
+  double written_at_ = 0.0;
+};
+
+} // namespace
+
+GrownPicture grow_picture(api::Context::Parts& context, api::FilmJob& job, const PictureGoal& goal,
+                          PictureOutput& output) {
+  return Growth(context, job, goal, output).run();
+}
+
+} // namespace pointgi

@@ -1,0 +1,88 @@
+#include "host/app/make_picture.h"
+#include "host/app/preview.h"
+#include "host/run.h"
+#include <cmath>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace pointgi {
+
+namespace {
+
+std::unique_ptr<api::Light> light_of(const PictureRun& run, const RunControl& control) {
+  return std::make_unique<api::Light>(run.prepared, api::LightOptions{true, run.by_paths}, control);
+}
+
+/// Of the preview: --time's share, or as much as nobody minds [s].
+constexpr double share_of_preview = 0.04, usual_preview = 1.0;
+
+std::string told_of(const GrownPicture& grown, const PictureGoal& goal) {
+  if (!goal.is_open()) return {};
+  std::string text = fmt::format("{} samples a pixel", grown.samples);
+  if (std::isfinite(grown.noise))
+    text += fmt::format(", relMSE about {:.2g}, of which {:.2g} is noise",
+                        goal.light_error + goal.noise_factor * grown.noise, goal.noise_factor * grown.noise);
+  return text;
+}
+
+} // namespace
+
+MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output) {
+  api::Context::Parts& context = *run.context.parts();
+  MadePictureFiles made;
+  made.light = light_of(run, run.control);
+  api::FilmJob job(*made.light->parts(), run.film);
+  output.begin(job);
+  made.totals = job.render([&](const Band& band) { output.take(band); });
+  made.interrupted = made.totals.interrupted;
+  if (made.interrupted && made.totals.rows_done == 0)
+    throw Error(ErrorKind::interrupted, "interrupted before the first rows were finished; nothing was written");
+  const double render_seconds = context.stages.records().back().seconds;
+  const RunControl to_the_end{{}, run.control.progress, run.control.log}; // what is there is kept
+  const RunScope scope(to_the_end);
+  context.stages.start("image");
+  output.finish(render_seconds);
+  const PixelWindow& w = job.window();
+  context.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
+  job.warn(made.totals);
+  made.told = made.interrupted
+                  ? fmt::format("the picture holds its first {} of {} rows", made.totals.rows_done, w.y1 - w.y0)
+                  : "";
+  return made;
+}
+
+MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, PictureOutput& output) {
+  MadePictureFiles made;
+  const StageLog& stages = run.context.parts()->stages;
+  const auto user_stops = [&] { return run.control.stop && run.control.stop(); };
+  RunControl in_time = run.control;
+  in_time.stop = [&] { return user_stops() || (goal.until && stages.seconds() > *goal.until); };
+  try {
+    if (!run.by_paths) {
+      const double seconds = goal.until ? share_of_preview * *goal.until : usual_preview;
+      const PreviewCost cost = write_preview(run.context, run.prepared, run.film, seconds, output, run.control);
+      if (goal.seconds_a_sample == 0.0) goal.seconds_a_sample = cost.seconds_a_sample;
+    }
+    made.light = light_of(run, in_time);
+    api::FilmJob job(*made.light->parts(), run.film);
+    const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output);
+    made.totals = grown.totals;
+    made.interrupted = grown.totals.interrupted;
+    if (grown.samples > 0) {
+      job.warn(grown.totals);
+      made.told =
+          made.interrupted ? fmt::format("the picture has {} samples a pixel", grown.samples) : told_of(grown, goal);
+      return made;
+    }
+    if (!output.written()) throw interruption();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted || !output.written()) throw;
+  }
+  made.light.reset();
+  made.interrupted = user_stops();
+  made.told = output.exr_path() + " is a first picture, with little of the light between surfaces" +
+              (made.interrupted ? "" : ": the time was over before the light was solved");
+  return made;
+}
+
+} // namespace pointgi

@@ -1,0 +1,31 @@
+#pragma once
+/// From a prepared scene to the files of its picture, at once or getting better.
+#include "host/app/grow_picture.h"
+#include <memory>
+
+namespace pointgi {
+
+struct PictureRun {
+  const api::Context& context;
+  const api::Prepared& prepared;
+  const api::FilmOptions& film;
+  bool by_paths;
+  const RunControl& control;
+};
+
+struct MadePictureFiles {
+  std::unique_ptr<api::Light> light; ///< null: what was written is a first picture without it
+  RenderTotals totals;
+  bool interrupted = false;
+  std::string told; ///< how far it is where it was interrupted, or how good it is, in a sentence; may be empty
+};
+
+/// Row after row straight into the files. Throws Error(interrupted) when that comes before a row is finished, which
+/// leaves older files alone, and as Light, FilmJob and PictureOutput.
+MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output);
+
+/// A preview, then the picture whenever it is better (host/app/grow_picture.h). Throws Error(interrupted) when that
+/// comes before the preview, and as Light, FilmJob and PictureOutput.
+MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, PictureOutput& output);
+
+} // namespace pointgi

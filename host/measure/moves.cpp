@@ -1,0 +1,102 @@
+#include "host/measure/moves.h"
+#include <algorithm>
+
+namespace pointgi {
+
+namespace {
+
+constexpr const char* method_key = "radiosity.method";
+constexpr const char* samples_key = "render.spp";
+
+std::string key_of(const std::string& text) {
+  return text.substr(0, text.find('='));
+}
+
+std::string value_of(const std::string& text) {
+  return text.substr(text.find('=') + 1);
+}
+
+bool has(const Overrides& overrides, const std::string& text) {
+  return std::find(overrides.begin(), overrides.end(), text) != overrides.end();
+}
+
+template <typename Which>
+void remove_if(Overrides& overrides, const Which& which) {
+  overrides.erase(std::remove_if(overrides.begin(), overrides.end(), which), overrides.end());
+}
+
+bool is_of(const Knob& knob, const std::string& key) {
+  return std::any_of(knob.values.begin(), knob.values.end(), [&](const KnobValue& value) {
+    return std::any_of(value.overrides.begin(), value.overrides.end(),
+                       [&](const std::string& text) { return key_of(text) == key; });
+  });
+}
+
+} // namespace
+
+std::string method_of(const Overrides& overrides, const std::string& otherwise) {
+  for (const std::string& text : overrides)
+    if (key_of(text) == method_key) return value_of(text);
+  return otherwise;
+}
+
+Overrides with_value(const Overrides& overrides, const Knob& knob, const KnobValue& value,
+                     const std::vector<Knob>& knobs, const std::string& method) {
+  Overrides result = overrides;
+  remove_if(result, [&](const std::string& text) {
+    const std::string key = key_of(text);
+    return is_of(knob, key) && (key != method_key || knob.key == method_key || !value.own);
+  });
+  if (!value.own) result.insert(result.end(), value.overrides.begin(), value.overrides.end());
+  const std::string now = method_of(result, method);
+  for (const Knob& other : knobs)
+    if (!other.method.empty() && other.method != now)
+      remove_if(result, [&](const std::string& text) {
+        const std::string key = key_of(text);
+        return key != method_key && is_of(other, key) && !has(value.overrides, text);
+      });
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+bool goes_with(const Overrides& overrides, const Knob& knob, const KnobValue& value, const std::string& method) {
+  if (knob.key == method_key) return true;
+  const std::string asked = method_of(value.overrides, "");
+  return asked.empty() || asked == method_of(overrides, method);
+}
+
+std::optional<std::size_t> value_in(const Overrides& overrides, const Knob& knob) {
+  const bool says = std::any_of(overrides.begin(), overrides.end(), [&](const std::string& text) {
+    return key_of(text) != method_key ? is_of(knob, key_of(text)) : knob.key == method_key;
+  });
+  for (std::size_t i = 0; i < knob.values.size(); ++i) {
+    const KnobValue& value = knob.values[i];
+    if (says ? std::all_of(value.overrides.begin(), value.overrides.end(),
+                           [&](const std::string& text) { return has(overrides, text); })
+             : value.own)
+      return i;
+  }
+  return std::nullopt;
+}
+
+Overrides cheapest(const std::vector<Knob>& knobs, const std::string& method) {
+  Overrides result;
+  for (const Knob& knob : knobs) {
+    if (!knob.falls || knob.values.empty() || knob.is_of_several_keys || knob.key == samples_key) continue;
+    if (!knob.method.empty() && knob.method != method) continue;
+    result = with_value(result, knob, knob.values.front(), knobs, method);
+  }
+  return result;
+}
+
+std::string name_of_overrides(const Overrides& overrides) {
+  std::string name;
+  for (const std::string& text : overrides) {
+    const std::string key = key_of(text);
+    name += (name.empty() ? "" : "_") + key.substr(key.rfind('.') + 1) + "-" + value_of(text);
+  }
+  return name;
+}
+
+} // namespace pointgi
