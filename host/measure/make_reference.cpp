@@ -1,5 +1,6 @@
 #include "host/measure/make_reference.h"
 #include "host/image/exr_writer.h"
+#include "host/output_folder.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,10 +18,6 @@ constexpr int samples_wanted = 128;
 constexpr int most_samples = 8192;
 
 const char* const half_names[] = {"reference-1.exr", "reference-2.exr"};
-
-std::string file_in(const std::string& folder, const char* name) {
-  return (std::filesystem::path(folder) / name).string();
-}
 
 /// Sums of pictures, each weighted by its samples.
 class Half {

@@ -4,6 +4,7 @@
 #include "host/image/png_writer.h"
 #include "host/measure/make_reference.h"
 #include "host/measure/search.h"
+#include "host/output_folder.h"
 #include "host/run.h"
 #include <algorithm>
 #include <cmath>
@@ -112,7 +113,7 @@ private:
     if (run_.progress) run_.progress({"measure", std::min(1.0, elapsed() / options_.budget), {}});
   }
 
-  std::string path_of(const std::string& name) const { return (fs::path(options_.folder) / name).string(); }
+  std::string path_of(const std::string& name) const { return file_in(options_.folder, name); }
 
   void save() {
     trade_.spent_seconds = elapsed();
@@ -131,7 +132,7 @@ private:
                       earlier.state == trade_.state && !earlier.runs.empty() && earlier.runs.front().name == own_name &&
                       (!options_.size || *options_.size == std::pair(earlier.width, earlier.height));
     if (!same) {
-      log_line(run_, "what " + path + " holds is of another scene, device, size or version, and is replaced");
+      log_info("what {} holds is of another scene, device, size or version, and is replaced", path);
       return;
     }
     std::optional<MadeReference> made;
@@ -147,11 +148,7 @@ private:
     for (MeasuredRun& one : earlier.runs) // what was refused for want of time may have it now
       if (one.refused.empty()) trade_.runs.push_back(std::move(one));
     trade_.knobs = std::move(earlier.knobs);
-    log_line(run_, fmt::format("{} runs of {} are taken over", trade_.runs.size(), path));
-  }
-
-  static void log_line(const RunControl& run, const std::string& text) {
-    if (run.log) run.log(LogLevel::info, text);
+    log_info("{} runs of {} are taken over", trade_.runs.size(), path);
   }
 
   /// Reference and own setting are needed for any result: building kernels may take a budget that is small, and then as
@@ -312,6 +309,7 @@ private:
 
 Measured measure(const api::Context& context, const MeasureOptions& options, const RunControl& run,
                  const std::function<void(const Trade&)>& save) {
+  const RunScope scope(run);
   return Measurement(context, options, run, save).measure();
 }
 

@@ -1,4 +1,5 @@
 #include "host/measure/search.h"
+#include "host/repeats.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -266,12 +267,10 @@ bool is_settled(const MeasuredRun& run, const SearchOptions& options) {
   return run.repeats.size() > 1 && run.seconds.high - run.seconds.low < 2.0 * options.steady * run.seconds.value;
 }
 
-Estimate estimate_of_repeats(std::vector<double> seconds) {
+Estimate estimate_of_repeats(const std::vector<double>& seconds) {
   if (seconds.empty()) return {};
-  std::sort(seconds.begin(), seconds.end());
-  const std::size_t half = seconds.size() / 2;
-  const double median = seconds.size() % 2 == 1 ? seconds[half] : 0.5 * (seconds[half - 1] + seconds[half]);
-  return {median, seconds.front(), seconds.back()};
+  const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
+  return {median_of_repeats(seconds), *least, *most};
 }
 
 std::string finding_of(const Trade& trade, const Knob& knob, const KnobCurve& curve,

@@ -41,7 +41,7 @@ inline constexpr char own_name[] = "own";
 bool is_settled(const MeasuredRun& run, const SearchOptions& options);
 
 /// Median, least and greatest; zeros of none.
-Estimate estimate_of_repeats(std::vector<double> seconds);
+Estimate estimate_of_repeats(const std::vector<double>& seconds);
 
 /// In a sentence: whether the error falls along the knob's runs within their intervals, and where not. `skipped`:
 /// values that were not measured.
