@@ -6,6 +6,7 @@
 #include "host/measure/search.h"
 #include "host/output_folder.h"
 #include "host/run.h"
+#include "host/scene/input_files.h"
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -322,9 +323,9 @@ std::string state_of(const MeasureOptions& options) {
     text += fmt::format("{} {} {}\n", path, failed ? 0 : size, failed ? 0 : time);
   };
   add_file(options.scene);
-  for (const CloudSettings& cloud :
-       api::Scene::from_file(options.scene, options.overrides).parts()->description().clouds)
-    add_file(cloud.file);
+  for (const std::string& file :
+       input_files(api::Scene::from_file(options.scene, options.overrides).parts()->description()))
+    add_file(file);
   if (!options.reference_file.empty()) add_file(options.reference_file);
   for (const std::string& one : options.overrides)
     text += one + "\n";
