@@ -2,6 +2,7 @@
 #include "host/app/commands.h"
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
+#include "host/measure/kept_errors.h"
 #include "host/measure/knobs.h"
 #include "host/measure/measure.h"
 #include "host/measure/report.h"
@@ -49,8 +50,8 @@ MeasureOptions checked(const MeasureCommand& command) {
   if (command.target && !(*command.target > 0.0 && std::isfinite(*command.target)))
     throw Error(ErrorKind::usage, "--target: expected an error above 0, for example 1e-3");
   state_of(options); // reads the scene
-  require_writable(options.folder,
-                   {std::string(pictures_name) + "/reference.png", trade_json_name, trade_csv_name, report_name});
+  require_writable(options.folder, {std::string(pictures_name) + "/reference.png", kept_errors_name, trade_json_name,
+                                    trade_csv_name, report_name});
   return options;
 }
 

@@ -2,6 +2,7 @@
 #include "host/cache/binary_cache.h"
 #include "host/image/exposure.h"
 #include "host/image/png_writer.h"
+#include "host/measure/kept_errors.h"
 #include "host/measure/make_reference.h"
 #include "host/measure/search.h"
 #include "host/output_folder.h"
@@ -118,6 +119,7 @@ private:
 
   void save() {
     trade_.spent_seconds = elapsed();
+    keep_errors(errors_, trade_, path_of(kept_errors_name)); // before the runs that count on it
     save_(trade_);
     saved_at_ = elapsed();
   }
@@ -136,18 +138,29 @@ private:
       log_info("what {} holds is of another scene, device, size or version, and is replaced", path);
       return;
     }
+    const auto refused = [](const MeasuredRun& one) { return !one.refused.empty(); }; // may have time enough now
+    earlier.runs.erase(std::remove_if(earlier.runs.begin(), earlier.runs.end(), refused), earlier.runs.end());
+    errors_ = kept_errors(path_of(kept_errors_name), earlier);
+    if (errors_.count(own_name) == 0) {
+      log_info("{} is not there or damaged, without which {} cannot be gone on with; both are replaced",
+               path_of(kept_errors_name), path);
+      return;
+    }
     std::optional<MadeReference> made;
     if (options_.reference_file.empty()) {
       made = kept_reference(options_.folder, earlier.width, earlier.height);
-      if (!made) return;
+      if (!made) {
+        errors_.clear(); // of a reference that is made anew
+        return;
+      }
       made->source = earlier.reference.source;
       made->seconds = earlier.reference.seconds;
       made_ = std::move(*made);
     }
     trade_.width = earlier.width;
     trade_.height = earlier.height;
-    for (MeasuredRun& one : earlier.runs) // what was refused for want of time may have it now
-      if (one.refused.empty()) trade_.runs.push_back(std::move(one));
+    for (MeasuredRun& one : earlier.runs)
+      if (errors_.count(one.name) == 1) trade_.runs.push_back(std::move(one));
     trade_.knobs = std::move(earlier.knobs);
     log_info("{} runs of {} are taken over", trade_.runs.size(), path);
   }
@@ -249,22 +262,13 @@ private:
 
   /// False where the error is no number.
   bool add_error(MeasuredRun& run, const Picture& picture) {
-    const std::vector<double> errors = reference_->errors(picture);
-    const double deviation = reference_->deviation(picture);
-    ErrorOfRepeats one;
-    one.add(errors, picture.width, picture.height, deviation);
-    const Estimate error = one.estimate();
+    const auto before = errors_.find(run.name);
+    ErrorOfRepeats all = before != errors_.end() ? before->second : ErrorOfRepeats();
+    all.add(reference_->errors(picture), picture.width, picture.height, reference_->deviation(picture));
+    const Estimate error = all.estimate();
     if (!std::isfinite(error.value)) return false;
-    const std::size_t count = run.repeats.size();
-    ErrorOfRepeats& all = errors_[run.name];
-    if (all.count() == count) {
-      all.add(errors, picture.width, picture.height, deviation);
-      run.error = all.estimate();
-    } else { // of a resumed run, whose pictures are not at hand
-      add_to_mean(run.error.value, error.value, count);
-      add_to_mean(run.error.low, error.low, count);
-      add_to_mean(run.error.high, error.high, count);
-    }
+    run.error = error;
+    errors_[run.name] = std::move(all);
     return true;
   }
 
@@ -302,7 +306,7 @@ private:
   Trade trade_;
   MadeReference made_;
   const Reference* reference_ = nullptr;
-  std::map<std::string, ErrorOfRepeats> errors_; ///< of runs by their names
+  ErrorsOfRuns errors_;
   std::vector<Knob> knobs_;
 };
 

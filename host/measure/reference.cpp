@@ -36,6 +36,10 @@ double mean_of_neighbours(const std::vector<double>& values, int width, std::siz
 
 constexpr std::size_t tile_side = 8, group_side = 2;
 
+std::size_t tiles_along(int pixels) {
+  return (static_cast<std::size_t>(pixels) + tile_side - 1) / tile_side;
+}
+
 /// A sum of independent variances, and the degrees of freedom that it was found with.
 struct Spread {
   double variance = 0.0, squares = 0.0;
@@ -127,20 +131,33 @@ double Reference::deviation(const Picture& picture) const {
   return std::sqrt(variance) / static_cast<double>(noise_.front().size());
 }
 
-void ErrorOfRepeats::add(const std::vector<double>& errors, int width, int height, double reference_deviation) {
+ErrorOfRepeats::ErrorOfRepeats(int width, int height, std::vector<std::vector<double>> sums, double deviation)
+    : deviation_(deviation), repeats_(std::move(sums)) {
+  set_size(width, height);
+}
+
+std::size_t ErrorOfRepeats::tiles(int width, int height) {
+  return tiles_along(width) * tiles_along(height);
+}
+
+void ErrorOfRepeats::set_size(int width, int height) {
   const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-  columns_ = (w + tile_side - 1) / tile_side;
-  rows_ = (h + tile_side - 1) / tile_side;
-  pixels_ = static_cast<double>(errors.size());
+  columns_ = tiles_along(width);
+  rows_ = tiles_along(height);
+  pixels_ = static_cast<double>(w * h);
+  pixels_of_tile_.clear();
+  for (std::size_t y = 0; y < h; y += tile_side)
+    for (std::size_t x = 0; x < w; x += tile_side)
+      pixels_of_tile_.push_back(static_cast<double>(std::min(tile_side, w - x) * std::min(tile_side, h - y)));
+}
+
+void ErrorOfRepeats::add(const std::vector<double>& errors, int width, int height, double reference_deviation) {
+  set_size(width, height);
   deviation_ = std::max(deviation_, reference_deviation);
-  pixels_of_tile_.assign(columns_ * rows_, 0.0);
   std::vector<double>& sums = repeats_.emplace_back(columns_ * rows_, 0.0);
-  for (std::size_t y = 0; y < h; ++y)
-    for (std::size_t x = 0; x < w; ++x) {
-      const std::size_t tile = y / tile_side * columns_ + x / tile_side;
-      sums[tile] += errors[y * w + x];
-      pixels_of_tile_[tile] += 1.0;
-    }
+  const auto w = static_cast<std::size_t>(width);
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    sums[i / w / tile_side * columns_ + i % w / tile_side] += errors[i];
 }
 
 namespace {

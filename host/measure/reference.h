@@ -54,16 +54,28 @@ private:
 /// interval is rather too wide. The quantile is Student's, its degrees of freedom by Welch and Satterthwaite.
 class ErrorOfRepeats {
 public:
+  ErrorOfRepeats() = default;
+  /// As one with these tile_sums(), each of tiles(width, height), and this deviation().
+  ErrorOfRepeats(int width, int height, std::vector<std::vector<double>> sums, double deviation);
+
   /// `errors` [height x width] as of Reference::errors; `reference_deviation` as of Reference::deviation.
   void add(const std::vector<double>& errors, int width, int height, double reference_deviation);
   std::size_t count() const { return repeats_.size(); }
   /// Of at least one picture.
   Estimate estimate() const;
 
+  static std::size_t tiles(int width, int height);
+  /// Of each picture the sum of the errors of each tile, row after row.
+  const std::vector<std::vector<double>>& tile_sums() const { return repeats_; }
+  /// The greatest reference_deviation.
+  double deviation() const { return deviation_; }
+
 private:
+  void set_size(int width, int height);
+
   std::size_t columns_ = 0, rows_ = 0;
   double pixels_ = 0.0, deviation_ = 0.0;
-  std::vector<std::vector<double>> repeats_; ///< sums of each tile
+  std::vector<std::vector<double>> repeats_; ///< tile_sums
   std::vector<double> pixels_of_tile_;
 };
 

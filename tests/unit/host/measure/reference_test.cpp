@@ -84,7 +84,7 @@ TEST_CASE("a single reference's variance is taken off") {
 
 TEST_CASE("what noise adds by the denominator of relMSE is taken off") {
   // Of skewed noise, too, as path tracers have it, and of a picture that is biased as well as noisy.
-  constexpr unsigned trials = 100;
+  constexpr unsigned trials = 40;
   const Picture exact = noisy(0.0, 1);
   for (const Noise noise : {Noise::gaussian, Noise::skewed})
     for (const double bias : {0.0, -0.1})
@@ -110,7 +110,7 @@ TEST_CASE("what noise adds by the denominator of relMSE is taken off") {
 }
 
 TEST_CASE("what the noise of a single reference adds by the denominator is taken off") {
-  constexpr unsigned trials = 100;
+  constexpr unsigned trials = 40;
   constexpr double variance = 1e-2;
   const Picture exact = noisy(0.0, 1);
   double off = 0.0, half_width = 0.0;
