@@ -9,10 +9,16 @@ namespace pointgi {
 /// Two converged pictures of other seeds. The product of a picture's differences from the two is, on average, its
 /// squared difference from the truth: the halves' own noise falls out. Or one picture, whose noise is taken off by its
 /// channels Variance.R, .G and .B where it has them, and stays in where it has none. What noise adds by way of the
-/// denominator of relMSE is taken off to first order of its variance. (Simulated, 19,200 pixels of a noise that has
-/// this variance relative to its square, pictures of relMSE 0.01 without bias and 0.02 with one of -10 %; in half
-/// widths of the interval, by Gaussian and by skewed noise: 1e-3: below 0.1, was 0.3 and -1.6; 1e-2: below 0.6, was 3
-/// and -10; 3e-2: below 1, was 8 and -10; 1e-1: up to 8, was 30: such a reference has too few samples.)
+/// denominator of relMSE is taken off to first order of its variance. Of the noise of mean(), its variance relative to
+/// its square, the error is then off by less than this, found by simulation
+/// (tests/unit/host/measure/reference_test.cpp: 64 x 48 pixels, Gaussian and skewed noise, pictures of relMSE 0.01 and,
+/// with a bias of -10 %, 0.018):
+///
+///     variance   off by   without correction   half of the interval
+///     1e-3       2e-5     3.4e-4               3.3e-4 to 4.8e-4
+///     1e-2       2.2e-4   2.9e-3               7.4e-4
+///     3e-2       7.4e-4   8.4e-3               1.5e-3 to 2.8e-3
+///     1e-1       0.19     0.29                 0.007 to 0.08: too few samples for a reference
 class Reference {
 public:
   /// Both of one size, with R, G and B.
@@ -42,8 +48,8 @@ private:
   std::vector<std::vector<double>> noise_;
   Picture mean_;
   double eps_ = 0.0;
-  /// By which noise_² stands for s⁴ in by_denominator, and for what product² holds of it: of a difference of halves,
-  /// whose square is 3 s⁴ on average, and, in the other constructor, of a variance.
+  /// Factor of noise_² in by_denominator. On average noise_² is 3 s⁴ where noise_ is of a difference of halves; it is
+  /// s⁴, and the factor 1, where it is of a variance.
   double fourth_ = 2.0 / 3.0;
 };
 

@@ -104,8 +104,8 @@ TEST_CASE("what noise adds by the denominator of relMSE is taken off") {
              << ", bias " << bias << ", variance " << variance << ": off by " << off << ", without correction by "
              << plain << ", half the interval is " << half_width);
         CHECK(std::fabs(off) < std::fabs(plain));
-        // Over the trials, their own noise is below a tenth of half_width.
-        if (variance < 5e-2) CHECK(std::fabs(off) < (variance < 2e-2 ? 0.25 : 0.7) * half_width);
+        // What is left is of higher order. Its own noise over the trials is below a tenth of half_width.
+        if (variance < 5e-2) CHECK(std::fabs(off) < (variance < 2e-3 ? 0.1 : 0.5) * half_width);
       }
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("what the noise of a single reference adds by the denominator is taken
     half_width += 0.5 * (found.high - found.low) / trials;
   }
   INFO("off by " << off << ", half the interval is " << half_width);
-  CHECK(std::fabs(off) < 0.25 * half_width);
+  CHECK(std::fabs(off) < 0.5 * half_width);
 }
 
 TEST_CASE("intervals of the error hold the truth about 95 times of 100") {
