@@ -57,7 +57,7 @@ double powers(int x, int y, int channel) {
   return std::pow(10.0, -6.0 + 12.0 * ((x * 37 + y * 101 + channel * 53) % 240) / 239.0);
 }
 
-/// The same numbers whenever it is made anew with the seed.
+/// Pixels are asked for once, in order: the numbers are the same whenever this is made anew with the seed.
 Pixel with_noise(const Pixel& value, double sigma, unsigned seed) {
   auto engine = std::make_shared<std::mt19937>(seed);
   auto normal = std::make_shared<std::normal_distribution<double>>();
@@ -68,7 +68,7 @@ struct Pair {
   std::string name, a, b;
 };
 
-/// The first half of them is for programs that know neither windows, holes nor small pictures.
+/// The first four are for programs that know neither windows, holes nor small pictures.
 std::vector<Pair> write_pairs(const TemporaryFolder& folder) {
   std::vector<Pair> pairs;
   const auto add = [&](const std::string& name, const Frame& frame_a, const Pixel& a, const Frame& frame_b,
@@ -87,6 +87,8 @@ std::vector<Pair> write_pairs(const TemporaryFolder& folder) {
   add("equal", usual, waves, usual, waves);
   add("black", usual, waves, usual, [](int, int, int) { return 0.0; });
   add("small", whole(9, 7), with_noise(waves, 0.2, 3), whole(9, 7), waves);
+  // 99 % of their values are a whole number of them.
+  add("hundreds", whole(20, 10), with_noise(waves, 0.2, 7), whole(20, 10), waves);
   add("narrow", whole(9, 40), with_noise(waves, 0.2, 4), whole(9, 40), waves);
   add("windows", {{5, 60, 0, 40}, 64, 48}, with_noise(waves, 0.2, 5), {{0, 50, 8, 48}, 64, 48}, waves);
   const auto holes = [](int x, int y, int c) {
