@@ -1,8 +1,7 @@
 #include "host/app/commands.h"
 #include "host/image/difference.h"
-#include <cmath>
+#include "host/json_number.h"
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -11,15 +10,10 @@ namespace {
 
 using nlohmann::json;
 
-/// JSON has no infinity: null.
-json number(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-
 json json_of(const Difference& d) {
-  return {{"mean_a", number(d.mean_a)},   {"mean_b", number(d.mean_b)}, {"mse", number(d.mse)},
-          {"rel_mse", number(d.rel_mse)}, {"bias", number(d.bias)},     {"p99", number(d.p99)},
-          {"ssim", number(d.ssim)}};
+  return {{"mean_a", json_number(d.mean_a)},   {"mean_b", json_number(d.mean_b)}, {"mse", json_number(d.mse)},
+          {"rel_mse", json_number(d.rel_mse)}, {"bias", json_number(d.bias)},     {"p99", json_number(d.p99)},
+          {"ssim", json_number(d.ssim)}};
 }
 
 void print_json(const CompareOptions& options, const PictureDifference& d) {

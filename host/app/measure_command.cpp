@@ -2,35 +2,20 @@
 #include "host/app/commands.h"
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
-#include "host/atomic_file.h"
+#include "host/measure/kept_errors.h"
 #include "host/measure/knobs.h"
 #include "host/measure/measure.h"
 #include "host/measure/report.h"
 #include "host/measure/stored_trade.h"
+#include "host/output_folder.h"
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <spdlog/spdlog.h>
 #include <sstream>
 
 namespace pointgi {
 
 namespace {
-
-std::string file_in(const std::string& folder, const char* name) {
-  return (std::filesystem::path(folder) / name).string();
-}
-
-/// Before the work, not after it.
-void require_writable(const std::string& folder) {
-  const std::string pictures = file_in(folder, pictures_name);
-  std::error_code failed;
-  std::filesystem::create_directories(pictures, failed);
-  if (failed) throw output_error(pictures, "create the folder", failed.value());
-  for (const char* name : {trade_json_name, trade_csv_name, report_name})
-    const AtomicFile probe(file_in(folder, name));
-  const AtomicFile probe(file_in(pictures, "reference.png"));
-}
 
 /// Below this a picture has too few tiles for an interval of its error (host/measure/reference.h).
 constexpr int least_side = 32;
@@ -66,7 +51,8 @@ MeasureOptions checked(const MeasureCommand& command) {
   if (command.target && !(*command.target > 0.0 && std::isfinite(*command.target)))
     throw Error(ErrorKind::usage, "--target: expected an error above 0, for example 1e-3");
   state_of(options); // reads the scene
-  require_writable(options.folder);
+  require_writable(options.folder, {std::string(pictures_name) + "/reference.png", kept_errors_name, trade_json_name,
+                                    trade_csv_name, report_name});
   return options;
 }
 

@@ -1,6 +1,7 @@
 #include "host/app/output_files.h"
 #include "host/atomic_file.h"
 #include "host/error.h"
+#include "host/scene/input_files.h"
 #include <filesystem>
 
 namespace pointgi {
@@ -17,8 +18,8 @@ bool same_file(const std::string& a, const std::string& b) {
 
 void require_outputs(const std::string& input, const Scene& scene, const std::vector<OutputFile>& outputs) {
   std::vector<std::string> inputs{input};
-  for (const CloudSettings& cloud : scene.clouds)
-    inputs.push_back(cloud.file);
+  for (const std::string& file : input_files(scene))
+    inputs.push_back(file);
   for (auto output = outputs.begin(); output != outputs.end(); ++output) {
     if (output->file.empty()) continue;
     for (const std::string& in : inputs)

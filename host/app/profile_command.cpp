@@ -2,16 +2,16 @@
 #include "host/app/commands.h"
 #include "host/app/profile_report.h"
 #include "host/app/stats.h"
-#include "host/atomic_file.h"
 #include "host/cl/kernel_source.h"
 #include "host/cl/session.h"
+#include "host/output_folder.h"
+#include "host/repeats.h"
 #include "host/stages/prepare.h"
 #include "host/tune/program_cover.h"
 #include "host/tune/self_test.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <spdlog/spdlog.h>
 #include <sstream>
 
@@ -37,26 +37,9 @@ std::vector<TraversalVariant> filtered(const std::string& filter) {
   return result;
 }
 
-std::string file_in(const std::string& folder, const std::string& name) {
-  return (std::filesystem::path(folder) / name).string();
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) throw output_error(folder, "create the folder", failed.value());
-}
-
 constexpr const char* json_name = "profile.json";
 constexpr const char* markdown_name = "profile.md";
 constexpr const char* trace_name = "trace.json";
-
-/// Before the work, not after it.
-void require_writable(const std::string& folder) {
-  make_folder(folder);
-  for (const char* name : {json_name, markdown_name, trace_name})
-    const AtomicFile probe(file_in(folder, name));
-}
 
 /// Each program as a compiler sees it, includes resolved, and an index of what it is built with: for compilers of
 /// devices that are not at hand.
@@ -98,7 +81,7 @@ void store(const ProfileOptions& options, ProfileReport& report) {
   else
     try {
       report.stored = store_winner(report.device, winner->variant, report.scene,
-                                   static_cast<double>(render.rays) / median(render.seconds));
+                                   static_cast<double>(render.rays) / median_of_repeats(render.seconds));
     } catch (const Error& error) { // the figures are worth having without a cache
       report.not_stored = error.what();
       spdlog::warn("{}", error.what());
@@ -146,7 +129,7 @@ ExitCode run_profile(const ProfileOptions& options) {
   Scene scene = load_any(options.input, options.overrides);
   if (says_something(scene.traversal, scene.octree))
     spdlog::info("[octree] and [traversal] of the scene do not narrow the variants: --filter does");
-  if (!options.output.empty()) require_writable(options.output);
+  if (!options.output.empty()) require_writable(options.output, {json_name, markdown_name, trace_name});
   stages.finish(scene.clouds.size() + scene.shapes.size(), "objects");
 
   Session session(choose_tested_device(options.device));

@@ -1,5 +1,6 @@
 #include "host/app/profile_report.h"
 #include "host/app/stats.h"
+#include "host/repeats.h"
 #include "host/tune/tuned.h"
 #include <algorithm>
 #include <cstdio>
@@ -22,7 +23,7 @@ const KernelProfile& kernel_of(const VariantProfile& v, ProfiledKernel kernel) {
 }
 
 double a_second(std::uint64_t count, const KernelProfile& k) {
-  const double seconds = median(k.seconds);
+  const double seconds = median_of_repeats(k.seconds);
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 
@@ -78,7 +79,7 @@ const Row& heads() {
 /// Launches a second, as fast as the machine was over the whole run: the reference's median, times how much faster the
 /// variant was than the reference beside it. A machine that was busy in between does not change the order.
 double rated(const VariantProfile& v, const VariantProfile& reference, ProfiledKernel kernel) {
-  const double seconds = median(kernel_of(reference, kernel).seconds);
+  const double seconds = median_of_repeats(kernel_of(reference, kernel).seconds);
   return seconds > 0.0 ? v.speedup(kernel) / seconds : 0.0;
 }
 
@@ -193,10 +194,10 @@ nlohmann::json kernel_json(const KernelProfile& k) {
       {"rays", k.rays}, {"bytes", k.bytes}, {"wrong", k.wrong}, {"ties", k.ties}, {"seconds", k.seconds}};
   if (k.seconds.empty()) return out;
   const auto [least, most] = std::minmax_element(k.seconds.begin(), k.seconds.end());
-  out["median_seconds"] = median(k.seconds);
+  out["median_seconds"] = median_of_repeats(k.seconds);
   out["min_seconds"] = *least;
   out["max_seconds"] = *most;
-  out["times_reference"] = median(k.speedup);
+  out["times_reference"] = median_of_repeats(k.speedup);
   out["rays_per_s"] = a_second(k.rays, k);
   out["bytes_per_s"] = a_second(k.bytes, k);
   return out;

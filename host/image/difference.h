@@ -26,8 +26,9 @@ struct PictureDifference {
 
 /// Both data windows count from the corners of their displayWindows. SSIM (Wang, Bovik, Sheikh and Simoncelli, "Image
 /// quality assessment", 2004: Gaussian window of sigma 1.5 over 11 x 11 pixels, K1 = 0.01, K2 = 0.03) looks at what a
-/// viewer sees: values over `white`, through the curve of sRGB, cut off at 1; the window is cut off at the borders.
-/// The names are for errors. Throws Error(input) where R, G or B is missing or the windows have no pixel in common.
+/// viewer sees: values over `white`, through the curve of sRGB, cut off at 1. Its windows are whole
+/// (host/image/ssim.h). The names are for errors. Throws Error(input) where R, G or B is missing or the windows have no
+/// pixel in common.
 PictureDifference difference(const Picture& a, const std::string& name_a, const Picture& b, const std::string& name_b);
 
 } // namespace pointgi

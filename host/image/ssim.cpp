@@ -26,6 +26,15 @@ void add(Moments& sums, double weight, const Moments& more) {
     sums[k] += weight * more[k];
 }
 
+struct Places {
+  int first, end;
+};
+
+/// Pixels along a side whose windows lie inside; where the side is too short for a whole window, all.
+Places window_places(int size) {
+  return size > 2 * reach ? Places{reach, size - reach} : Places{0, size};
+}
+
 double similarity(const Moments& m) {
   const double a = m[1] / m[0], b = m[2] / m[0];
   const double variance = (m[3] + m[4]) / m[0] - a * a - b * b, covariance = m[5] / m[0] - a * b;
@@ -38,11 +47,12 @@ double ssim(const std::vector<float>& a, const std::vector<float>& b, int width,
   const auto weights = gaussian();
   const auto weight = [&](int off) { return weights[static_cast<std::size_t>(off + reach)]; };
   const auto columns = static_cast<std::size_t>(width);
+  const Places across = window_places(width), down = window_places(height);
   // The window is a product: along the rows first, for the eleven rows that are needed at a time.
   std::vector<std::vector<Moments>> rows(2 * reach + 1, std::vector<Moments>(columns));
   const auto blur_row = [&](int y) {
     std::vector<Moments>& row = rows[static_cast<std::size_t>(y) % rows.size()];
-    for (int x = 0; x < width; ++x) {
+    for (int x = across.first; x < across.end; ++x) {
       Moments sums{};
       for (int i = std::max(0, x - reach); i <= std::min(width - 1, x + reach); ++i) {
         const std::size_t at = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(i);
@@ -53,17 +63,17 @@ double ssim(const std::vector<float>& a, const std::vector<float>& b, int width,
     }
   };
   double total = 0.0;
-  for (int y = 0, ready = 0; y < height; ++y) {
+  for (int y = down.first, ready = 0; y < down.end; ++y) {
     for (; ready <= std::min(height - 1, y + reach); ++ready)
       blur_row(ready);
-    for (std::size_t x = 0; x < columns; ++x) {
+    for (int x = across.first; x < across.end; ++x) {
       Moments sums{};
       for (int j = std::max(0, y - reach); j <= std::min(height - 1, y + reach); ++j)
-        add(sums, weight(j - y), rows[static_cast<std::size_t>(j) % rows.size()][x]);
+        add(sums, weight(j - y), rows[static_cast<std::size_t>(j) % rows.size()][static_cast<std::size_t>(x)]);
       total += similarity(sums);
     }
   }
-  return total / (static_cast<double>(columns) * height);
+  return total / (static_cast<double>(across.end - across.first) * (down.end - down.first));
 }
 
 } // namespace pointgi

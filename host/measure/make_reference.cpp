@@ -1,5 +1,6 @@
 #include "host/measure/make_reference.h"
 #include "host/image/exr_writer.h"
+#include "host/output_folder.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,15 +13,11 @@ namespace {
 constexpr int shortest_side_measured = 160, longest_side_measured = 320;
 
 /// Of each half: fewer leave the errors of good settings in the reference's noise.
-constexpr int samples_wanted = 128;
+constexpr int samples_wanted = 512;
 /// More would be finer than any setting.
 constexpr int most_samples = 8192;
 
 const char* const half_names[] = {"reference-1.exr", "reference-2.exr"};
-
-std::string file_in(const std::string& folder, const char* name) {
-  return (std::filesystem::path(folder) / name).string();
-}
 
 /// Sums of pictures, each weighted by its samples.
 class Half {

@@ -2,9 +2,12 @@
 #include "host/cache/binary_cache.h"
 #include "host/image/exposure.h"
 #include "host/image/png_writer.h"
+#include "host/measure/kept_errors.h"
 #include "host/measure/make_reference.h"
 #include "host/measure/search.h"
+#include "host/output_folder.h"
 #include "host/run.h"
+#include "host/scene/input_files.h"
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -22,6 +25,9 @@ constexpr double reference_share = 1.0 / 3.0, warm_share = 0.05, latest_end = 1.
 
 /// Of the first picture of each run.
 constexpr unsigned first_seed = 1;
+
+/// Photons that are enough to run their kernels.
+constexpr int most_to_load = 10000;
 
 /// What is found is kept at least this often [s].
 constexpr double save_interval = 5.0;
@@ -119,10 +125,11 @@ private:
     if (run_.progress) run_.progress({"measure", std::min(1.0, elapsed() / options_.budget), {}});
   }
 
-  std::string path_of(const std::string& name) const { return (fs::path(options_.folder) / name).string(); }
+  std::string path_of(const std::string& name) const { return file_in(options_.folder, name); }
 
   void save() {
     trade_.spent_seconds = elapsed();
+    keep_errors(errors_, trade_, path_of(kept_errors_name)); // before the runs that count on it
     save_(trade_);
     saved_at_ = elapsed();
   }
@@ -138,27 +145,34 @@ private:
                       earlier.state == trade_.state && !earlier.runs.empty() && earlier.runs.front().name == own_name &&
                       (!options_.size || *options_.size == std::pair(earlier.width, earlier.height));
     if (!same) {
-      log_line(run_, "what " + path + " holds is of another scene, device, size or version, and is replaced");
+      log_info("what {} holds is of another scene, device, size or version, and is replaced", path);
+      return;
+    }
+    const auto refused = [](const MeasuredRun& one) { return !one.refused.empty(); }; // may have time enough now
+    earlier.runs.erase(std::remove_if(earlier.runs.begin(), earlier.runs.end(), refused), earlier.runs.end());
+    errors_ = kept_errors(path_of(kept_errors_name), earlier);
+    if (errors_.count(own_name) == 0) {
+      log_info("{} is not there or damaged, without which {} cannot be gone on with; both are replaced",
+               path_of(kept_errors_name), path);
       return;
     }
     std::optional<MadeReference> made;
     if (options_.reference_file.empty()) {
       made = kept_reference(options_.folder, earlier.width, earlier.height);
-      if (!made) return;
+      if (!made) {
+        errors_.clear(); // of a reference that is made anew
+        return;
+      }
       made->source = earlier.reference.source;
       made->seconds = earlier.reference.seconds;
       made_ = std::move(*made);
     }
     trade_.width = earlier.width;
     trade_.height = earlier.height;
-    for (MeasuredRun& one : earlier.runs) // what was refused for want of time may have it now
-      if (one.refused.empty()) trade_.runs.push_back(std::move(one));
+    for (MeasuredRun& one : earlier.runs)
+      if (errors_.count(one.name) == 1) trade_.runs.push_back(std::move(one));
     trade_.knobs = std::move(earlier.knobs);
-    log_line(run_, fmt::format("{} runs of {} are taken over", trade_.runs.size(), path));
-  }
-
-  static void log_line(const RunControl& run, const std::string& text) {
-    if (run.log) run.log(LogLevel::info, text);
+    log_info("{} runs of {} are taken over", trade_.runs.size(), path);
   }
 
   /// Reference and own setting are needed for any result: building kernels may take a budget that is small, and then as
@@ -202,6 +216,7 @@ private:
 
   /// The scene's own setting, which tells what light there is, and so which knobs there are.
   bool first_run() {
+    load_kernels();
     MeasuredRun own;
     own.name = own_name;
     const bool whole = measure_once(own, left());
@@ -210,6 +225,25 @@ private:
                                         "; give more time by --budget, or a cheaper setting by --set");
     if (whole) trade_.runs.push_back(own);
     return whole;
+  }
+
+  /// A picture by little of everything, which runs most kernels for the first time: the scene's own setting may be dear,
+  /// and would have to be measured twice.
+  void load_kernels() {
+    const Scene& scene = maker_.scene(inner_);
+    std::vector<std::string> little{"radiosity.tolerance=0.1"};
+    if (scene.radiosity.method == "auto") { // both by as much, or it would choose another one
+      little.push_back("radiosity.method=auto");
+      little.push_back(fmt::format("radiosity.directions={}", std::max(1, scene.radiosity.directions / 8)));
+      little.push_back(fmt::format("radiosity.epsilon={:g}", std::min(0.5, 4.0 * scene.radiosity.epsilon)));
+    }
+    if (scene.caustics.photons > most_to_load) little.push_back(fmt::format("caustics.photons={}", most_to_load));
+    let_begin();
+    try {
+      maker_.make(little, first_seed, inner_);
+    } catch (const Error&) { // the scene's own setting will say it
+      if (user_stops()) throw;
+    }
   }
 
   std::vector<Knob>& knobs() {
@@ -284,22 +318,13 @@ private:
 
   /// False where the error is no number.
   bool add_error(MeasuredRun& run, const Picture& picture) {
-    const std::vector<double> errors = reference_->errors(picture);
-    const double deviation = reference_->deviation(picture);
-    ErrorOfRepeats one;
-    one.add(errors, picture.width, picture.height, deviation);
-    const Estimate error = one.estimate();
+    const auto before = errors_.find(run.name);
+    ErrorOfRepeats all = before != errors_.end() ? before->second : ErrorOfRepeats();
+    all.add(reference_->errors(picture), picture.width, picture.height, reference_->deviation(picture));
+    const Estimate error = all.estimate();
     if (!std::isfinite(error.value)) return false;
-    const std::size_t count = run.repeats.size();
-    ErrorOfRepeats& all = errors_[run.name];
-    if (all.count() == count) {
-      all.add(errors, picture.width, picture.height, deviation);
-      run.error = all.estimate();
-    } else { // of a resumed run, whose pictures are not at hand
-      add_to_mean(run.error.value, error.value, count);
-      add_to_mean(run.error.low, error.low, count);
-      add_to_mean(run.error.high, error.high, count);
-    }
+    run.error = error;
+    errors_[run.name] = std::move(all);
     return true;
   }
 
@@ -339,7 +364,7 @@ private:
   Trade trade_;
   MadeReference made_;
   const Reference* reference_ = nullptr;
-  std::map<std::string, ErrorOfRepeats> errors_; ///< of runs by their names
+  ErrorsOfRuns errors_;
   std::vector<Knob> knobs_;
 };
 
@@ -347,21 +372,23 @@ private:
 
 Measured measure(const api::Context& context, const MeasureOptions& options, const RunControl& run,
                  const std::function<void(const Trade&)>& save) {
+  const RunScope scope(run);
   return Measurement(context, options, run, save).measure();
 }
 
 std::string state_of(const MeasureOptions& options) {
   std::string text;
-  const auto add_file = [&](const std::string& path) {
+  const auto add_file = [&](const std::string& name) {
     std::error_code failed;
+    const std::string path = fs::weakly_canonical(name, failed).string(); // wherever the command is called
     const auto size = fs::file_size(path, failed);
     const auto time = fs::last_write_time(path, failed).time_since_epoch().count();
     text += fmt::format("{} {} {}\n", path, failed ? 0 : size, failed ? 0 : time);
   };
   add_file(options.scene);
-  for (const CloudSettings& cloud :
-       api::Scene::from_file(options.scene, options.overrides).parts()->description().clouds)
-    add_file(cloud.file);
+  for (const std::string& file :
+       input_files(api::Scene::from_file(options.scene, options.overrides).parts()->description()))
+    add_file(file);
   if (!options.reference_file.empty()) add_file(options.reference_file);
   for (const std::string& one : options.overrides)
     text += one + "\n";

@@ -32,8 +32,8 @@ struct Measured {
 Measured measure(const api::Context& context, const MeasureOptions& options, const RunControl& run,
                  const std::function<void(const Trade&)>& save);
 
-/// Hash of what the outcome depends on besides the program: the text of the scene, size and time of the files that it
-/// names and of the reference file.
+/// Hash of what the outcome depends on besides program and device: the overrides, and size and time of the scene's
+/// file, of all files that it names (host/scene/input_files.h) and of the reference file.
 std::string state_of(const MeasureOptions& options);
 
 /// The names of what measure() and the command line write into the folder.

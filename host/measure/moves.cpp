@@ -20,6 +20,10 @@ bool has(const Overrides& overrides, const std::string& text) {
   return std::find(overrides.begin(), overrides.end(), text) != overrides.end();
 }
 
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789.e-") == std::string::npos;
+}
+
 template <typename Which>
 void remove_if(Overrides& overrides, const Which& which) {
   overrides.erase(std::remove_if(overrides.begin(), overrides.end(), which), overrides.end());
@@ -84,6 +88,7 @@ Overrides cheapest(const std::vector<Knob>& knobs, const std::string& method) {
   Overrides result;
   for (const Knob& knob : knobs) {
     if (!knob.falls || knob.values.empty() || knob.is_of_several_keys || knob.key == samples_key) continue;
+    if (!is_number(knob.values.front().text)) continue; // another way, not less of the same
     if (!knob.method.empty() && knob.method != method) continue;
     result = with_value(result, knob, knob.values.front(), knobs, method);
   }

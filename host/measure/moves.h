@@ -21,7 +21,8 @@ bool goes_with(const Overrides& overrides, const Knob& knob, const KnobValue& va
 /// The place of the knob's value that the overrides have; of the scene's own where they do not say; absent: another.
 std::optional<std::size_t> value_in(const Overrides& overrides, const Knob& knob);
 
-/// The cheapest values of all knobs whose error falls with them and that `method` reads, but for the samples of pixels.
+/// The least values of all knobs that are numbers, whose error falls with them and that `method` reads, but for the
+/// samples of pixels.
 Overrides cheapest(const std::vector<Knob>& knobs, const std::string& method);
 
 /// "directions-32_photons-100000": names the overrides by the last parts of their keys; usable in a file name.

@@ -23,7 +23,23 @@ double student_quantile(double freedom) {
          (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
 }
 
+/// Of the pixels around `at`, up to eight; 0 of none.
+double mean_of_neighbours(const std::vector<double>& values, int width, std::size_t at) {
+  const auto columns = static_cast<std::size_t>(width), rows = values.size() / columns;
+  const std::size_t x = at % columns, y = at / columns;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t j = y > 0 ? y - 1 : 0; j <= std::min(y + 1, rows - 1); ++j)
+    for (std::size_t i = x > 0 ? x - 1 : 0; i <= std::min(x + 1, columns - 1); ++i)
+      if (i != x || j != y) sum += values[j * columns + i], ++count;
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
 constexpr std::size_t tile_side = 8, group_side = 2;
+
+std::size_t tiles_along(int pixels) {
+  return (static_cast<std::size_t>(pixels) + tile_side - 1) / tile_side;
+}
 
 /// A sum of independent variances, and the degrees of freedom that it was found with.
 struct Spread {
@@ -51,7 +67,7 @@ Reference::Reference(Picture first, Picture second) : mean_(first) {
   eps_ = difference(mean_, "reference", mean_, "reference").eps;
 }
 
-Reference::Reference(Picture alone) : mean_(std::move(alone)) {
+Reference::Reference(Picture alone) : mean_(std::move(alone)), fourth_(1.0) {
   eps_ = difference(mean_, "reference", mean_, "reference").eps;
   for (const char* colour : colours) {
     const auto variance = mean_.channels.find(std::string("Variance.") + colour);
@@ -60,6 +76,17 @@ Reference::Reference(Picture alone) : mean_(std::move(alone)) {
     else
       noise_.emplace_back(variance->second.begin(), variance->second.end());
   }
+}
+
+/// What the noise m of mean() adds on average to a pixel's (d - m)² - s² over its square, which m is in, too. With
+/// f(m) = 1 / ((b + m)² + eps) it is s² (d² f'' / 2 - 2 d f') + s⁴ f'', and higher orders. d by itself holds m, and
+/// s² may: where noise is skewed, d s² would be off by as much as is to be taken off, so in d f' stands the mean of
+/// the neighbours' differences. Higher orders count where m is not small against b; what is taken off stays below s² f
+/// for their sake.
+double Reference::by_denominator(double product, double around, double b, double noise) const {
+  const double f = 1.0 / (b * b + eps_), f1 = -2.0 * b * f * f, f2 = (8.0 * b * b * f - 2.0) * f * f;
+  const double added = noise * (f2 * (0.5 * product + fourth_ * noise) - 2.0 * around * f1);
+  return std::clamp(added, -noise * f, noise * f);
 }
 
 double Reference::own_noise() const {
@@ -73,12 +100,16 @@ double Reference::own_noise() const {
 }
 
 std::vector<double> Reference::errors(const Picture& picture) const {
-  std::vector<double> errors(noise_.front().size(), 0.0);
+  std::vector<double> errors(noise_.front().size(), 0.0), off(errors.size());
   for (std::size_t k = 0; k < noise_.size(); ++k) {
     const std::vector<float>&a = picture.channels.at(colours[k]), &b = mean_.channels.at(colours[k]);
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      off[i] = double{a[i]} - b[i];
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      const double off = double{a[i]} - b[i];
-      errors[i] += (off * off - noise_[k][i]) / (double{b[i]} * b[i] + eps_) / 3.0;
+      const double noise = noise_[k][i], product = off[i] * off[i] - noise, y = double{b[i]};
+      const double added =
+          noise > 0.0 ? by_denominator(product, mean_of_neighbours(off, mean_.width, i), y, noise) : 0.0;
+      errors[i] += (product / (y * y + eps_) - added) / 3.0;
     }
   }
   return errors;
@@ -113,20 +144,33 @@ double Reference::deviation(const Picture& picture) const {
   return std::sqrt(variance) / static_cast<double>(noise_.front().size());
 }
 
-void ErrorOfRepeats::add(const std::vector<double>& errors, int width, int height, double reference_deviation) {
+ErrorOfRepeats::ErrorOfRepeats(int width, int height, std::vector<std::vector<double>> sums, double deviation)
+    : deviation_(deviation), repeats_(std::move(sums)) {
+  set_size(width, height);
+}
+
+std::size_t ErrorOfRepeats::tiles(int width, int height) {
+  return tiles_along(width) * tiles_along(height);
+}
+
+void ErrorOfRepeats::set_size(int width, int height) {
   const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-  columns_ = (w + tile_side - 1) / tile_side;
-  rows_ = (h + tile_side - 1) / tile_side;
-  pixels_ = static_cast<double>(errors.size());
+  columns_ = tiles_along(width);
+  rows_ = tiles_along(height);
+  pixels_ = static_cast<double>(w * h);
+  pixels_of_tile_.clear();
+  for (std::size_t y = 0; y < h; y += tile_side)
+    for (std::size_t x = 0; x < w; x += tile_side)
+      pixels_of_tile_.push_back(static_cast<double>(std::min(tile_side, w - x) * std::min(tile_side, h - y)));
+}
+
+void ErrorOfRepeats::add(const std::vector<double>& errors, int width, int height, double reference_deviation) {
+  set_size(width, height);
   deviation_ = std::max(deviation_, reference_deviation);
-  pixels_of_tile_.assign(columns_ * rows_, 0.0);
   std::vector<double>& sums = repeats_.emplace_back(columns_ * rows_, 0.0);
-  for (std::size_t y = 0; y < h; ++y)
-    for (std::size_t x = 0; x < w; ++x) {
-      const std::size_t tile = y / tile_side * columns_ + x / tile_side;
-      sums[tile] += errors[y * w + x];
-      pixels_of_tile_[tile] += 1.0;
-    }
+  const auto w = static_cast<std::size_t>(width);
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    sums[i / w / tile_side * columns_ + i % w / tile_side] += errors[i];
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #include "host/measure/search.h"
 #include "host/measure/finding.h"
 #include "host/measure/moves.h"
+#include "host/repeats.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -313,12 +314,10 @@ bool is_settled(const MeasuredRun& run, const SearchOptions& options) {
   return run.repeats.size() > 1 && run.seconds.high - run.seconds.low < 2.0 * options.steady * run.seconds.value;
 }
 
-Estimate estimate_of_repeats(std::vector<double> seconds) {
+Estimate estimate_of_repeats(const std::vector<double>& seconds) {
   if (seconds.empty()) return {};
-  std::sort(seconds.begin(), seconds.end());
-  const std::size_t half = seconds.size() / 2;
-  const double median = seconds.size() % 2 == 1 ? seconds[half] : 0.5 * (seconds[half - 1] + seconds[half]);
-  return {median, seconds.front(), seconds.back()};
+  const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
+  return {median_of_repeats(seconds), *least, *most};
 }
 
 } // namespace pointgi

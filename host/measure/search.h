@@ -45,6 +45,6 @@ inline constexpr char own_name[] = "own", cheap_name[] = "cheap";
 bool is_settled(const MeasuredRun& run, const SearchOptions& options);
 
 /// Median, least and greatest; zeros of none.
-Estimate estimate_of_repeats(std::vector<double> seconds);
+Estimate estimate_of_repeats(const std::vector<double>& seconds);
 
 } // namespace pointgi

@@ -1,9 +1,8 @@
 #include "host/error.h"
+#include "host/json_number.h"
 #include "host/measure/trade.h"
-#include <cmath>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 namespace pointgi {
 
@@ -11,26 +10,21 @@ namespace {
 
 using nlohmann::json;
 
-/// JSON has no infinity: null.
-json number(double value) {
-  return std::isfinite(value) ? json(value) : json();
-}
-
 json numbers(const std::vector<double>& values) {
   json list = json::array();
   for (const double value : values)
-    list.push_back(number(value));
+    list.push_back(json_number(value));
   return list;
 }
 
 json object_of(const Estimate& e) {
-  return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
+  return {{"value", json_number(e.value)}, {"low", json_number(e.low)}, {"high", json_number(e.high)}};
 }
 
 json object_of(const MeasuredRun& run) {
   json stages = json::object();
   for (const auto& [name, seconds] : run.stages)
-    stages[name] = number(seconds);
+    stages[name] = json_number(seconds);
   return {{"name", run.name},
           {"setting",
            {{"overrides", run.setting.overrides},
@@ -43,10 +37,10 @@ json object_of(const MeasuredRun& run) {
           {"stages", stages},
           {"memory_bytes", run.memory_bytes},
           {"error", object_of(run.error)},
-          {"noise", number(run.noise)},
-          {"warm_seconds", number(run.warm_seconds)},
-          {"bias", number(run.bias)},
-          {"ssim", number(run.ssim)},
+          {"noise", json_number(run.noise)},
+          {"warm_seconds", json_number(run.warm_seconds)},
+          {"bias", json_number(run.bias)},
+          {"ssim", json_number(run.ssim)},
           {"picture", run.picture},
           {"on_front", run.on_front},
           {"refused", run.refused}};
@@ -187,14 +181,14 @@ std::string json_of(const Trade& trade) {
               {"state", trade.state},
               {"width", trade.width},
               {"height", trade.height},
-              {"budget_seconds", number(trade.budget_seconds)},
-              {"spent_seconds", number(trade.spent_seconds)},
-              {"prepare_seconds", number(trade.prepare_seconds)},
+              {"budget_seconds", json_number(trade.budget_seconds)},
+              {"spent_seconds", json_number(trade.spent_seconds)},
+              {"prepare_seconds", json_number(trade.prepare_seconds)},
               {"reference",
                {{"source", trade.reference.source},
                 {"picture", trade.reference.picture},
-                {"own_noise", number(trade.reference.own_noise)},
-                {"seconds", number(trade.reference.seconds)}}},
+                {"own_noise", json_number(trade.reference.own_noise)},
+                {"seconds", json_number(trade.reference.seconds)}}},
               {"runs", json::array()},
               {"knobs", json::array()}};
   for (const MeasuredRun& run : trade.runs)

@@ -7,10 +7,12 @@
 namespace pointgi {
 namespace {
 
-EnvironmentMap load_map(const TableReader& table, const std::string& scene_file, UpAxis up) {
+std::string map_file(const TableReader& table, const std::string& scene_file) {
   const std::string name = table.need_text("map", "the name of a .hdr or .exr file");
-  const std::string path =
-      std::filesystem::absolute(std::filesystem::path(scene_file).parent_path() / name).lexically_normal().string();
+  return std::filesystem::absolute(std::filesystem::path(scene_file).parent_path() / name).lexically_normal().string();
+}
+
+EnvironmentMap load_map(const TableReader& table, const std::string& path, UpAxis up) {
   const double turn = table.number("rotate_deg", limits::angle).value_or(0.0);
   const double scale = table.number("scale", limits::light).value_or(1.0);
   try {
@@ -43,7 +45,8 @@ void load_section(const TableReader& table, const std::string& scene_file, Scene
   }
   if (table.has("radiance"))
     table.fail("radiance", "the environment has a map, which gives its radiance; remove one of the two");
-  surround(std::make_shared<const EnvironmentMap>(load_map(table, scene_file, scene.up)), scene);
+  scene.environment_file = map_file(table, scene_file);
+  surround(std::make_shared<const EnvironmentMap>(load_map(table, scene.environment_file, scene.up)), scene);
 }
 
 } // namespace

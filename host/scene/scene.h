@@ -270,6 +270,7 @@ struct Scene {
   std::vector<LightSettings> lights;
   Vector3d environment{0, 0, 0};             ///< radiance [W/m²/sr] from every direction; 0 where there is a map
   std::shared_ptr<const EnvironmentMap> sky; ///< light from all around that is not the same everywhere, or null
+  std::string environment_file;              ///< absolute: where the environment's map was read; empty: there is none
   RadiositySettings radiosity;
   CausticSettings caustics;
   OctreeSettings octree;

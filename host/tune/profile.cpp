@@ -1,5 +1,6 @@
 #include "host/tune/profile.h"
 #include "host/error.h"
+#include "host/repeats.h"
 #include "host/tune/profile_bench.h"
 #include <algorithm>
 #include <map>
@@ -9,13 +10,6 @@ namespace pointgi {
 const char* name_of(ProfiledKernel kernel) {
   static constexpr const char* names[profiled_kernels] = {"eye", "bounced", "any", "render"};
   return names[static_cast<std::size_t>(kernel)];
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 bool VariantProfile::complete() const {
@@ -29,7 +23,7 @@ bool VariantProfile::wrong() const {
 }
 
 double VariantProfile::speedup(ProfiledKernel kernel) const {
-  return median(kernels[static_cast<std::size_t>(kernel)].speedup);
+  return median_of_repeats(kernels[static_cast<std::size_t>(kernel)].speedup);
 }
 
 std::vector<std::size_t> Profile::ranking() const {

@@ -77,6 +77,4 @@ struct Profile {
 Profile profile_variants(Session& session, const ProfileRequest& request, const std::function<void(double)>& progress,
                          const std::function<bool()>& stop);
 
-double median(std::vector<double> values); ///< 0 of none
-
 } // namespace pointgi

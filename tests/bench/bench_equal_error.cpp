@@ -5,6 +5,7 @@
 /// --help
 #include "host/measure/reference.h"
 #include "host/render/render.h"
+#include "host/repeats.h"
 #include "host/stages/light_stages.h"
 #include "host/stages/prepared_scene.h"
 #include "tests/support/cache_folder.h"
@@ -111,12 +112,6 @@ private:
   PreparedScene ready_;
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 /// Error of the path tracer: constant / spp^exponent, the line through (log spp, log error).
 struct PowerLaw {
   double exponent = 0.0, constant = 0.0;
@@ -205,7 +200,7 @@ struct Cost {
     all.push_back(s.all());
   }
   /// Of a picture of this share of the pixels, as the medians say.
-  double at(double share) const { return median(light) + share * median(pixels); }
+  double at(double share) const { return median_of_repeats(light) + share * median_of_repeats(pixels); }
 };
 
 std::vector<double> quotients(const std::vector<double>& a, const std::vector<double>& b) {
@@ -247,8 +242,8 @@ void measure_pairs(Bench& bench, const LightPaths& paths, const Target& target, 
   }
   const auto conclude = [&](const char* what, const Cost& ours) {
     std::printf("%s: ours %.2f s, path tracer %.1f s: %.1f x (median of pairs); of the small picture %.1f x\n", what,
-                median(ours.all), median(path.all), median(quotients(path.all, ours.all)),
-                path.at(small) / ours.at(small));
+                median_of_repeats(ours.all), median_of_repeats(path.all),
+                median_of_repeats(quotients(path.all, ours.all)), path.at(small) / ours.at(small));
   };
   std::printf("\nto relMSE %.3g\n", target.error);
   conclude("V-map made anew (a first picture)", anew);

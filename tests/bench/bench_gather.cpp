@@ -3,6 +3,7 @@
 ///   bench_gather [PHOTONS [PAIRS [K...]]]
 #include "host/passes/variant.h"
 #include "host/photon/device_photon_map.h"
+#include "host/repeats.h"
 #include "octree/build/cell_key.h"
 #include "tests/support/photons.h"
 #include <algorithm>
@@ -25,11 +26,6 @@ double seconds_of(const Work& work) {
   const auto start = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
 }
 
 /// Places on the surface that the photons lie on, in the order of a curve, and more of them than photons: as the
@@ -104,10 +100,13 @@ std::size_t measure(Session& session, std::size_t count, unsigned k, int pairs) 
     for (unsigned j = 0; j < k; ++j)
       different += std::fabs(a[j] - b[j]) > 1e-5f * b[j] + 1e-14f;
   }
-  const auto rate = [&](const std::vector<double>& s) { return 1e-6 * static_cast<double>(places.size()) / median(s); };
+  const auto rate = [&](const std::vector<double>& s) {
+    return 1e-6 * static_cast<double>(places.size()) / median_of_repeats(s);
+  };
   std::printf("%8zu photons, k %4u: %7.3f M places/s   FLANN %7.3f   ratio %.2f   build %.3f s, FLANN %.3f   %zu "
               "distances differ\n",
-              count, k, rate(our_seconds), rate(their_seconds), median(ratios), our_build, their_build, different);
+              count, k, rate(our_seconds), rate(their_seconds), median_of_repeats(ratios), our_build, their_build,
+              different);
   std::fflush(stdout);
   return different;
 }

@@ -1,5 +1,6 @@
 /// What the command line promises: exit codes, messages, files (interface.md).
 #include "host/image/picture_writer.h"
+#include "tests/support/hdr_bytes.h"
 #include "tests/support/run_program.h"
 #include "tests/support/scans.h"
 #include "tests/support/stats_file.h"
@@ -137,6 +138,17 @@ TEST_CASE("wrong usage is exit code 2 and says what is right") {
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Contains(c.says));
   }
+}
+
+TEST_CASE("the environment's map is an input, which no output replaces") {
+  const TemporaryFolder folder;
+  const std::string map = folder.write("sky.hdr", hdr_header(1, 1) + hdr_row({{9, 9, 9, 128}}, HdrCode::flat));
+  const std::string scene =
+      folder.write("ball.toml", std::string(small_scene()) + "[environment]\nmap = \"sky.hdr\"\n");
+  const Run run = run_program("render " + scene + " -o " + folder.file("x.exr") + " --stats " + map);
+  CAPTURE(run.err);
+  CHECK(run.code == 2);
+  CHECK_THAT(run.err, Contains("sky.hdr is an input"));
 }
 
 TEST_CASE("the name that a picture gets by default is no input's, either") {

@@ -1,5 +1,6 @@
 /// `pointgi measure` as a user starts it. No test looks at a time.
 #include "host/error.h"
+#include "host/measure/kept_errors.h"
 #include "host/measure/measure.h"
 #include "tests/support/run_program.h"
 #include <catch2/catch.hpp>
@@ -74,6 +75,21 @@ TEST_CASE("measure finds a front, keeps it, and goes on with it") {
     REQUIRE(kept->repeats.size() >= one.repeats.size());
     CHECK(std::equal(one.repeats.begin(), one.repeats.end(), kept->repeats.begin()));
   }
+  // The intervals are those of all repetitions, whichever of the two measurements made them.
+  const ErrorsOfRuns errors = kept_errors(setting.out + "/errors.cbor", second);
+  for (const MeasuredRun& one : second.runs) {
+    if (!one.refused.empty()) continue;
+    INFO(one.name);
+    REQUIRE(errors.count(one.name) == 1);
+    const Estimate of_all = errors.at(one.name).estimate();
+    CHECK(one.error.low == of_all.low);
+    CHECK(one.error.high == of_all.high);
+  }
+
+  std::filesystem::remove(setting.out + "/errors.cbor");
+  const Run anew = setting.measure("--knobs spp --size 32x32 --budget 4");
+  CHECK(anew.code == 0);
+  CHECK_THAT(anew.err, Contains("errors.cbor is not there") && !Contains("are taken over"));
 }
 
 TEST_CASE("measure compares with a picture that it is given") {
@@ -112,6 +128,23 @@ TEST_CASE("measure says what is wrong before it begins") {
   const Run run = run_program("measure " + setting.scene + " -o " + setting.folder.file("file") + "/out");
   CHECK(run.code != 0);
   CHECK_THAT(run.err, Contains("cannot create the folder"));
+}
+
+TEST_CASE("a measurement that Ctrl-C ends keeps what it has") {
+  const Measuring setting;
+  // The shell sends the signal once, as soon as a second setting has its picture, and returns the program's exit code.
+  const Run run = setting.measure("--knobs spp --size 32x32 --budget 600",
+                                  "sh -c '\"$@\" & while kill -0 $! && ! [ -e \"$0\" ]; do sleep 0.1; done; "
+                                  "kill -INT $!; wait $!' " +
+                                      setting.out + "/pictures/spp-2.png");
+  INFO(run.err);
+  CHECK(run.code == 130);
+  CHECK_THAT(run.err, Contains("interrupted: what was measured is kept"));
+  CHECK_THAT(run.out, Contains("trade.json"));
+  const Trade trade = read_trade(setting.out + "/trade.json");
+  CHECK(named(trade, "spp-2") != nullptr);
+  CHECK(kept_errors(setting.out + "/errors.cbor", trade).size() == trade.runs.size());
+  CHECK(std::filesystem::exists(setting.out + "/report.html"));
 }
 
 TEST_CASE("an interrupted measurement keeps what it has") {

@@ -3,10 +3,10 @@
 #include "host/measure/report.h"
 #include "tests/support/scans.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/trade.h"
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <png.h>
 #include <regex>
@@ -31,55 +31,14 @@ void write_grey(const std::string& path, unsigned char green) {
   REQUIRE(png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr) != 0);
 }
 
-MeasuredRun run_of(const std::string& name, std::vector<std::string> overrides, double seconds, Estimate error) {
-  MeasuredRun run;
-  run.name = name;
-  run.setting = {std::move(overrides), "radiosity.directions", name.substr(name.rfind('-') + 1), "directions"};
-  run.repeats = {seconds};
-  run.seconds = {seconds, 0.9 * seconds, 1.1 * seconds};
-  run.stages = {{"octree", 0.1 * seconds}, {"render", 0.7 * seconds}};
-  run.error = error;
-  run.ssim = 0.99;
-  run.picture = "pictures/" + name + ".png";
-  return run;
-}
-
-/// Five runs and a refused one; the scene's own is not on the front. One has no finite error, one less than can be
-/// told, one picture is not there and one is no picture.
-Trade small_trade(const TemporaryFolder& folder) {
-  Trade trade;
-  trade.version = "0.0.0";
-  trade.scene = "a </script><b> & 'room'\u2028.toml";
-  trade.device = "a device";
-  trade.date = "2026-01-02";
-  trade.width = 16;
-  trade.height = 12;
-  trade.budget_seconds = 300.0;
-  trade.spent_seconds = 290.0;
-  trade.reference = {"path tracer", "pictures/reference.png", 1e-5, 90.0};
-  const auto directions = [](const char* count) {
-    return std::vector<std::string>{"radiosity.method=directions", std::string("radiosity.directions=") + count};
-  };
-  trade.runs = {run_of("own", {}, 2.0, {1.0 / 1024.0, 9e-4, 1.1e-3}),
-                run_of("directions-64", directions("64"), 0.3, {5e-3, 4e-3, 6e-3}),
-                run_of("directions-512", directions("512"), 0.9, {4.1e-4, 4e-4, 4.2e-4}),
-                run_of("directions-4096", directions("4096"), 8.125, {-1e-6, -1e-5, 8e-6}),
-                run_of("directions-1", directions("1"), 0.31, {std::numeric_limits<double>::infinity(), 0.0, 0.0})};
-  MeasuredRun refused = run_of("directions-65536", directions("65536"), 0.0, {});
-  refused.refused = "more memory than the device has";
-  refused.picture.clear();
-  trade.runs.push_back(refused);
-  trade.knobs = {
-      {"radiosity.directions", {"directions-1", "directions-64", "directions-512", "directions-4096"}, true, "falls"},
-      {"caustics.photons", {}, true, "no specular surface"}};
-  mark_front(trade);
-
+/// Some of its pictures are there; one is no picture.
+Trade trade_with_pictures(const TemporaryFolder& folder) {
   std::filesystem::create_directory(folder.file("pictures"));
   write_grey(folder.file("pictures/reference.png"), 100);
   write_grey(folder.file("pictures/directions-64.png"), 117);
   write_grey(folder.file("pictures/directions-512.png"), 102);
   folder.write("pictures/directions-1.png", "secret");
-  return trade;
+  return test::small_trade();
 }
 
 /// The JSON that the page holds in the element `id`.
@@ -135,9 +94,9 @@ std::string text_between(const std::string& page, const std::string& from, const
 
 } // namespace
 
-TEST_CASE("A report is one file that holds the measurement and its pictures and fetches nothing") {
+TEST_CASE("a report is one file that holds the measurement and its pictures and fetches nothing") {
   const TemporaryFolder folder;
-  const Trade trade = small_trade(folder);
+  const Trade trade = trade_with_pictures(folder);
   write_report(trade, json_of(trade), folder.file(""));
   const std::string page = contents(folder.file("report.html"));
 
@@ -158,7 +117,7 @@ TEST_CASE("A report is one file that holds the measurement and its pictures and 
   CHECK(page.find("\u2028") == std::string::npos);
 }
 
-TEST_CASE("A report that cannot be written is an error of output") {
+TEST_CASE("a report that cannot be written is an error of output") {
   const TemporaryFolder folder;
   const Trade trade;
   try {
@@ -169,7 +128,7 @@ TEST_CASE("A report that cannot be written is an error of output") {
   }
 }
 
-TEST_CASE("A browser shows the figures of the measurement and the settings that answer a wish") {
+TEST_CASE("a browser shows the figures of the measurement and the settings that answer a wish") {
   const std::string program = browser();
   if (program.empty()) {
     WARN("skipped: no chromium is installed");
@@ -177,7 +136,7 @@ TEST_CASE("A browser shows the figures of the measurement and the settings that 
     return;
   }
   const TemporaryFolder folder;
-  Trade trade = small_trade(folder);
+  Trade trade = trade_with_pictures(folder);
   write_report(trade, json_of(trade), folder.file(""));
   const std::vector<std::size_t> front = mark_front(trade);
   const auto name_at = [&](const std::optional<std::size_t>& at) { return at ? trade.runs[*at].name : std::string(); };

@@ -181,4 +181,15 @@ bool has_mesh_extension(const std::string& path) {
   return !extension.empty() && Assimp::Importer().IsExtensionSupported(extension);
 }
 
+std::vector<std::string> files_beside_mesh(const std::string& path) {
+  const char* extension = has_extension(path, ".obj") ? ".mtl" : has_extension(path, ".gltf") ? ".bin" : nullptr;
+  std::vector<std::string> files;
+  if (extension == nullptr) return files;
+  std::error_code failed; // then the mesh cannot be read either, which is said elsewhere
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::absolute(path).parent_path(), failed))
+    if (has_extension(entry.path().string(), extension)) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 } // namespace pointgi

@@ -2,6 +2,7 @@
 /// Meshes become point clouds: the renderer knows splats only.
 #include "host/cloud/point_cloud.h"
 #include <string>
+#include <vector>
 
 namespace pointgi {
 
@@ -18,5 +19,9 @@ PointCloud sample_mesh(const std::string& path, double spacing, CloudReport& rep
 
 /// Whether assimp reads files that are named so.
 bool has_mesh_extension(const std::string& path);
+
+/// Files that may be read with the mesh, sorted: all .mtl in the folder of an .obj, all .bin in that of a .gltf. Which
+/// of them belong to it only the mesh knows.
+std::vector<std::string> files_beside_mesh(const std::string& path);
 
 } // namespace pointgi

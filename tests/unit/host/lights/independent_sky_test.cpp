@@ -1,18 +1,14 @@
-/// Sun and sky against independent implementations, where python3 (or the program that POINTGI_PYTHON names) has them.
+/// Sun and sky against independent implementations, where python3 has them.
 #include "host/lights/sky_model.h"
 #include "host/lights/sun_position.h"
-#include "tests/support/scans.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/run_python.h"
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <sstream>
-#include <sys/wait.h>
 #include <vector>
 
 using namespace pointgi;
-using pointgi::test::TemporaryFolder;
 
 namespace {
 
@@ -24,22 +20,10 @@ double luminance(const Vector3d& c) {
 
 /// The numbers that independent_sky.py prints; none where the library is missing, which the test then says.
 std::vector<Row> independent(const std::string& what, const std::string& library) {
-  const TemporaryFolder folder;
-  const char* python = std::getenv("POINTGI_PYTHON");
-  const std::string command = std::string(python != nullptr ? python : "python3") +
-                              " " POINTGI_SOURCE_DIR "/tests/unit/host/lights/independent_sky.py " + what + " >" +
-                              folder.file("out") + " 2>" + folder.file("err");
-  const int status = std::system(command.c_str());
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (code == 77 || code == 127) {
-    WARN("skipped: no " << library << " for python3");
-    test::something_skipped = true;
-    return {};
-  }
-  INFO(test::contents(folder.file("err")));
-  REQUIRE(code == 0);
+  const auto printed = test::printed_by_python("unit/host/lights/independent_sky.py", what, library);
+  if (!printed) return {};
   std::vector<Row> rows;
-  std::istringstream text(test::contents(folder.file("out")));
+  std::istringstream text(*printed);
   for (std::string line; std::getline(text, line);) {
     std::istringstream numbers(line);
     rows.emplace_back();
