@@ -3,6 +3,7 @@
 #include "host/measure/forecast.h"
 #include "host/measure/measure.h"
 #include "host/measure/stored_trade.h"
+#include "host/scene/presets.h"
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -112,6 +113,44 @@ std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOpt
   chosen.told = fmt::format("chosen by what was measured of it on {}: {}; expected: {}, relMSE {:.2g}{}", trade.date,
                             settings_text(chosen.overrides), duration_text(chosen.seconds), chosen.error, doubt);
   return chosen;
+}
+
+std::optional<std::pair<double, double>> errors_of_kind(const std::string& preset, const std::string& kind) {
+  std::optional<std::pair<double, double>> range;
+  for (const PresetMeasurement& m : preset_measurements()) {
+    if (m.preset != preset || m.kind != kind) continue;
+    if (!range) range.emplace(m.error, m.error);
+    range = std::pair(std::min(range->first, m.error), std::max(range->second, m.error));
+  }
+  return range;
+}
+
+PresetChoice choose_by_presets(const std::string& kind, const RenderOptions& options, double light_seconds,
+                               double begun) {
+  // Of --time, as much for the light: more samples are wanted, too.
+  constexpr double share_of_light = 0.4;
+  const auto time_of = [&](const Preset& preset) { return light_seconds * preset.directions; };
+  const double for_light = options.seconds ? share_of_light * (*options.seconds - begun) : 0.0;
+  const Preset* chosen = nullptr;
+  for (const Preset& preset : presets()) {
+    const auto reached = errors_of_kind(preset.name, kind);
+    const double error = reached ? reached->second : preset.error;
+    if (options.seconds && chosen != nullptr && time_of(preset) > for_light) break;
+    chosen = &preset;
+    if (options.error && error <= *options.error) break;
+  }
+  PresetChoice choice;
+  choice.preset = chosen->name;
+  PictureGoal& goal = choice.setting.goal;
+  goal.until = options.seconds;
+  goal.error = options.error;
+  for (const PresetMeasurement& m : preset_measurements())
+    if (m.preset == chosen->name && m.kind == kind)
+      goal.light_error = std::max(goal.light_error, m.error - m.noise / std::max(1, m.samples));
+  choice.setting.told = fmt::format("--quality {} is chosen, as scenes of its kind ({}) need; `pointgi measure {}` would tell "
+                                    "what this one does",
+                                    chosen->name, kind, options.input);
+  return choice;
 }
 
 std::optional<ChosenSetting> forecast_of(const Trade& trade, const std::vector<std::string>& overrides, int samples,

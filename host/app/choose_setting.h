@@ -23,6 +23,18 @@ std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOpt
                                              const std::vector<std::string>& own_overrides, double pixels,
                                              double begun);
 
+/// Where the scene was not measured: by the presets, and what they reached on scenes of its kind. `light_seconds`: of the
+/// light by the scene's own settings, as far as they are known.
+struct PresetChoice {
+  std::string preset;
+  ChosenSetting setting;
+};
+PresetChoice choose_by_presets(const std::string& kind, const RenderOptions& options, double light_seconds,
+                               double begun);
+
+/// relMSE that a preset reached on scenes of a kind, from the least to the greatest; absent: it was measured on none.
+std::optional<std::pair<double, double>> errors_of_kind(const std::string& preset, const std::string& kind);
+
 /// What the trade says of a picture by `overrides`, none of them render.spp, of `samples` samples a pixel; absent: it
 /// was not measured.
 std::optional<ChosenSetting> forecast_of(const Trade& trade, const std::vector<std::string>& overrides, int samples,

@@ -1,3 +1,4 @@
+#include "host/api/estimate.h"
 #include "host/app/choose_setting.h"
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
@@ -7,6 +8,7 @@
 #include "host/app/progress.h"
 #include "host/app/stats.h"
 #include "host/scene/presets.h"
+#include "host/stages/scene_kind.h"
 #include "host/stages/view_warnings.h"
 #include <algorithm>
 #include <cstdio>
@@ -146,6 +148,30 @@ std::optional<ChosenSetting> setting_for(const RenderOptions& options, const Sce
   return setting;
 }
 
+/// Without a measurement of the scene: what presets reached on others of its kind. Sets the light's settings of the
+/// preset that --time and --error choose.
+std::optional<ChosenSetting> setting_of_kind(const RenderOptions& options, const api::Prepared& prepared,
+                                             const api::FilmOptions& film, const std::string& kind,
+                                             const RunControl& run) {
+  api::Prepared::Parts& parts = *prepared.parts();
+  if (!has_open_goal(options)) {
+    if (const auto errors = errors_of_kind(options.quality, kind))
+      spdlog::info("expected: relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had; `pointgi info` tells the "
+                   "seconds",
+                   errors->first, errors->second, kind);
+    return std::nullopt;
+  }
+  double light_seconds = 0.0;
+  if (options.seconds)
+    for (const api::StageEstimate& stage : api::estimate_picture(prepared, film, run).stages)
+      if (stage.runs && stage.stage != "render" && stage.stage != "cloud" && stage.stage != "octree")
+        light_seconds += stage.seconds;
+  const PresetChoice choice = choose_by_presets(kind, options, light_seconds, parts.context->stages.seconds());
+  apply_preset(preset_named(choice.preset, "--quality"), parts.scene, true);
+  spdlog::info("{}: {}", options.input, choice.setting.told);
+  return choice.setting;
+}
+
 /// A picture of more pixels does not grow unless that is asked for: a film of 40 floats a pixel is kept.
 constexpr double most_growing_pixels = 1 << 23;
 
@@ -188,12 +214,15 @@ ExitCode run_render(const RenderOptions& options) {
     description = scene.parts()->description();
   }
   const api::Prepared prepared(context, scene, run.control());
+  const std::string kind = kind_of_scene(prepared.parts()->scene, prepared.parts()->ready);
+  std::optional<ChosenSetting> of_kind;
+  if (!setting && options.integrator != "path") of_kind = setting_of_kind(options, prepared, film, kind, run.control());
   PictureOutput output(output_of(options), description.render.auto_exposure
                                                ? std::nullopt
                                                : std::optional<double>(description.render.exposure));
   const PictureRun picture{context, prepared, film, options.integrator == "path", run.control()};
   const MadePictureFiles made =
-      grows(options, pixels) ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), output)
+      grows(options, pixels) ? make_growing_picture(picture, goal_of(options, setting ? setting : of_kind, description.render.spp), output)
                              : make_picture_at_once(picture, output);
   if (description.render.auto_exposure)
     spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,

@@ -39,7 +39,9 @@ public:
     MeasuredRun own;
     own.name = own_name;
     if (!once(place_of(own), budget)) return false;
-    longest_ = std::max({options_.longest_share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
+    // Where there are few knobs, each may take more.
+    const double share = std::max(options_.longest_share, 0.5 / static_cast<double>(std::max<std::size_t>(1, knobs_.size())));
+    longest_ = std::max({share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
     const bool whole = choose_start() && singles() && combinations() && repeats();
     mark_front(trade_);
     tell_curves();

@@ -37,10 +37,11 @@ std::vector<PresetMeasurement> read_measurements() {
   const toml::table document = file_named(name);
   std::vector<PresetMeasurement> all;
   for (const TableReader& row : TableReader(document, name, "").tables("measured")) {
-    row.allow_only({"preset", "scene", "kind", "chosen_by", "error", "low", "high", "seconds"});
+    row.allow_only({"preset", "scene", "kind", "chosen_by", "error", "low", "high", "noise", "samples", "seconds"});
     all.push_back({row.need_text("preset", "a preset"), row.need_text("scene", "a name"),
                    row.need_text("kind", "a kind"), row.boolean("chosen_by").value_or(false),
                    row.need_number("error", figure), row.need_number("low", figure), row.need_number("high", figure),
+                   row.need_number("noise", figure), static_cast<int>(row.need_number("samples", figure)),
                    row.need_number("seconds", figure)});
   }
   return all;

@@ -23,6 +23,8 @@ struct PresetMeasurement {
   std::string kind;                          ///< "room", "statue", "terrain", "foliage", "glass and mirror", "interior"
   bool chosen_by;                            ///< the presets were chosen by it; else it tests them
   double error = 0.0, low = 0.0, high = 0.0; ///< relMSE and its 95 % interval
+  double noise = 0.0;                        ///< relMSE of one sample a pixel, by the pixels' variances
+  int samples = 0;                           ///< a pixel
   double seconds = 0.0;                      ///< of the picture, on the device of the measurement
 };
 

@@ -64,6 +64,8 @@ PlacedSplats load_and_place(Scene& scene, bool bare) {
   choose_view(scene, world, bare);
   log_reports(scene, world);
   PlacedSplats placed;
+  for (const CloudReport& report : world.reports)
+    placed.kinds.push_back(report.kind);
   placed.frame = frame_of(world.cloud);
   placed.splats = place_in_cube(world, placed.frame);
   placed.first_ids = world.first;

@@ -27,6 +27,7 @@ struct PlacedSplats {
   PatchBends bends;              ///< of the splats; empty where they are discs
   std::vector<std::uint32_t> id; ///< of each splat: its place among the kept points of all clouds and shapes, in order
   std::vector<std::uint32_t> first_ids; ///< id of the first point of each cloud, then of each shape
+  std::vector<CloudKind> kinds;         ///< of the clouds
   std::optional<FileOrder> file_order;  ///< of a scene of one cloud and nothing else, whose points are those of a file
 };
 

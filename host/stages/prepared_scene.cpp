@@ -50,6 +50,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   std::vector<Splat>().swap(placed.splats); // assigning {} would keep its memory
   ready.octree = summary_of(pools);
   ready.first_ids = placed.first_ids;
+  ready.kinds = placed.kinds;
   ready.file_order = std::move(placed.file_order);
   ready.ids = ids_of(source_of(pools), placed.id);
   ready.on_device = upload(session, std::move(pools), ready.choice.variant, ready.points);

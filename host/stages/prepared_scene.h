@@ -19,6 +19,7 @@ struct PreparedScene {
   Pool<std::uint32_t> ids;              ///< of each point of the pool: its place among the kept points of the scene
   std::vector<std::uint32_t> first_ids; ///< id of the first point of each cloud, then of each shape
   std::optional<FileOrder> file_order;  ///< as of PlacedSplats
+  std::vector<CloudKind> kinds;         ///< as of PlacedSplats
   DeviceLighting lighting;
 };
 
