@@ -33,6 +33,11 @@ struct RenderOptions : LightOptions {
   std::string dump_folder;
 };
 
+/// The picture that `info` tells the cost of.
+struct InfoOptions : RenderOptions {
+  bool no_estimate = false; ///< no device is opened
+};
+
 struct BakeOptions : LightOptions {
   bool sky = false;    ///< the share of the sky that each point sees, too
   bool passes = false; ///< the lit cloud after each pass, too
@@ -77,7 +82,7 @@ ExitCode run_bake(const BakeOptions& options);
 ExitCode run_profile(const ProfileOptions& options);
 ExitCode run_measure(const MeasureCommand& command);
 ExitCode run_compare(const CompareOptions& options);
-ExitCode run_info(const std::string& file);
+ExitCode run_info(const InfoOptions& options);
 ExitCode run_devices(bool json, bool check, const std::string& device);
 
 } // namespace pointgi

@@ -29,8 +29,9 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
   return numbers;
 }
 
-/// Flags win over the scene file; they become overrides, so that one place checks both.
-std::vector<std::string> all_overrides_of(const RenderOptions& options) {
+} // namespace
+
+std::vector<std::string> picture_overrides_of(const RenderOptions& options) {
   std::vector<std::string> overrides = overrides_of(options);
   if (!options.size.empty()) {
     const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
@@ -42,6 +43,8 @@ std::vector<std::string> all_overrides_of(const RenderOptions& options) {
   if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
   return overrides;
 }
+
+namespace {
 
 /// The part of the picture that --pixelbounds asks for; absent: all.
 std::optional<std::array<int, 4>> window_of(const RenderOptions& options, const RenderSettings& render) {
@@ -63,7 +66,7 @@ api::Scene checked_scene(const RenderOptions& options) {
   if (options.integrator != "path" && !options.paths.empty())
     throw Error(ErrorKind::usage, "--paths: only --integrator path can choose the light paths that count");
   light_paths(options.paths, {}); // before a large scene is read
-  api::Scene checked = api::Scene::from_file(options.input, all_overrides_of(options));
+  api::Scene checked = api::Scene::from_file(options.input, picture_overrides_of(options));
   checked.set_quality(options.quality, !options.spp);
   const Scene scene = checked.parts()->description();
   if (options.integrator != "path") require_possible_radiosity(scene);

@@ -10,8 +10,6 @@ namespace pointgi {
 
 namespace {
 
-/// Rows of a band: enough for the EXR's blocks of 16, few enough that a picture 65536 wide stays small in memory.
-constexpr int band_rows = 16;
 /// Pixels a row of the first launch, of which nothing is known yet: 8000 rays; and of any.
 constexpr std::size_t first_columns = 16, most_columns = 4096;
 

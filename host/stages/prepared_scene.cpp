@@ -2,6 +2,7 @@
 #include "host/passes/build_pools.h"
 #include "host/run.h"
 #include "host/scene/limits.h"
+#include "host/stages/require_memory.h"
 #include <algorithm>
 #include <cmath>
 
@@ -54,6 +55,8 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.first_ids = placed.first_ids;
   ready.file_order = std::move(placed.file_order);
   ready.ids = ids_of(source_of(pools), placed.id);
+  require_pool_memory(session, {scene, points_of(pools), ready.ids, ready.first_ids, ready.frame.side}, ready.octree,
+                      ready.choice.variant);
   ready.on_device = upload(session, std::move(pools), ready.choice.variant, ready.points);
   stages.finish(ready.octree.nodes, "nodes");
   ready.lighting = device_lighting(scene, ready.frame, ready.points, clips);

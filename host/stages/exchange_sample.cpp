@@ -1,0 +1,287 @@
+#include "host/stages/exchange_sample.h"
+#include "host/cache/vmap_cache.h"
+#include "host/cl/batches.h"
+#include "host/radiosity/direction_set.h"
+#include "host/stages/device_need.h"
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace pointgi {
+
+namespace {
+
+/// Rays of the solution that tells how many applies there will be: about half a second of two cores.
+constexpr double coarse_rays = 1.5e6;
+constexpr int fewest_directions = 4;
+/// Points of the samples: pairs of 1500 are a million, and so are the rays of a map of 3000.
+constexpr std::size_t pair_points = 1500, map_points = 3000, first_points = 256;
+/// Of solutions that only tell what an apply costs.
+constexpr double loose = 0.5;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void quiet(const std::string&) {}
+
+/// The scene with every so manieth of the points that exchange light; all still block it.
+class ThinScene {
+public:
+  ThinScene(const ExchangeScene& whole, std::size_t most) : whole_(whole) {
+    const std::vector<std::uint32_t> places = exchanging_points(whole);
+    points_.assign(whole.points.begin(), whole.points.end());
+    exchanges_.assign(whole.exchanges.begin(), whole.exchanges.end());
+    for (const Splat& s : points_)
+      exchanges_.resize(std::max(exchanges_.size(), material_of(s) + 1), 1);
+    const auto other = static_cast<float>(exchanges_.size());
+    exchanges_.push_back(0);
+    const double share = std::min(1.0, static_cast<double>(most) / std::max<double>(1.0, double(places.size())));
+    double at = 0.0;
+    for (const std::uint32_t p : places)
+      if ((at += share) >= 1.0 - 1e-9) {
+        at -= 1.0;
+        ++count_;
+      } else
+        points_[p].material += other - std::floor(points_[p].material); // what sides it has stays
+    ratio_ = count_ > 0 ? static_cast<double>(places.size()) / static_cast<double>(count_) : 1.0;
+  }
+
+  ExchangeScene scene() const {
+    ExchangeScene thin = whole_;
+    thin.points = points_;
+    thin.exchanges = exchanges_;
+    return thin;
+  }
+  std::size_t count() const { return count_; }
+  double ratio() const { return ratio_; } ///< all points over these
+
+private:
+  const ExchangeScene& whole_;
+  std::vector<Splat> points_;
+  std::vector<std::uint8_t> exchanges_;
+  std::size_t count_ = 0;
+  double ratio_ = 1.0;
+};
+
+/// A method at work.
+struct Worked {
+  std::unique_ptr<PreparedRadiosity> prepared;
+  double prepare_seconds = 0.0, solve_seconds = 0.0;
+  unsigned applies = 0; ///< of the solution, and the last one that gathers; or passes
+  std::uint64_t bytes = 0;
+  Solution solution;
+
+  double apply_seconds() const { return solve_seconds / std::max(1u, applies); }
+};
+
+Worked work(Session& session, const RadiosityMethod& method, const ExchangeScene& scene,
+            const RadiositySettings& settings, const EnteringLight& light, double tolerance,
+            std::optional<RadiosityMap> map = {}) {
+  Worked worked;
+  const std::uint64_t held = session.held_bytes();
+  Clock::time_point begin = Clock::now();
+  worked.prepared = method.prepare(session, scene, settings, std::move(map), quiet);
+  worked.prepare_seconds = seconds_since(begin);
+  worked.bytes = session.held_bytes() - std::min(held, session.held_bytes());
+  begin = Clock::now();
+  worked.solution = worked.prepared->solve(light, tolerance, quiet).solution;
+  worked.solve_seconds = seconds_since(begin);
+  worked.applies = worked.solution.applies + (method.has_passes ? 0u : 1u);
+  return worked;
+}
+
+/// Seconds of the device in a kernel until now.
+double kernel_seconds(const Session& session, const char* kernel) {
+  const auto found = session.kernel_times().find(kernel);
+  return found == session.kernel_times().end() ? 0.0 : found->second.seconds;
+}
+
+double statistic(const PreparedRadiosity& prepared, const std::string& name) {
+  for (const MethodStatistic& s : prepared.statistics())
+    if (name == s.name) return static_cast<double>(s.value);
+  return 0.0;
+}
+
+class Sampler {
+public:
+  Sampler(Session& session, const ExchangeScene& exchange, const RadiositySettings& settings,
+          const RadiosityMethod& method, const ExchangeKnown& known)
+      : session_(session), exchange_(exchange), settings_(settings), method_(method),
+        known_(known), count_{exchanging_points(exchange).size(), exchange.points.size} {}
+
+  ExchangeEstimate estimate() {
+    if (count_.points == 0) return {};
+    const std::string name = method_.name;
+    const Worked coarse = solve_coarsely();
+    estimate_.applies = coarse.applies;
+    estimate_.method_bytes = exchange_need(name, settings_, count_, session_.bytes_left()).usual;
+    if (name == "fmm")
+      sample_fmm();
+    else if (name == "cones")
+      sample_cones();
+    else if (name == "gather")
+      sample_gather(coarse.solution);
+    else if (name == "direct")
+      sample_direct();
+    return std::move(estimate_);
+  }
+
+private:
+  Worked warm(const RadiositySettings& settings, std::optional<RadiosityMap> map = {}) {
+    const ThinScene few(exchange_, first_points);
+    return work(session_, method_, few.scene(), settings, known_.light, loose, std::move(map));
+  }
+
+  /// By few directions, whatever the method; where it is "directions", what the others cost follows.
+  Worked solve_coarsely() {
+    const RadiosityMethod& directions = *radiosity_method("directions");
+    RadiositySettings few = settings_;
+    few.directions = std::clamp(static_cast<int>(coarse_rays / static_cast<double>(count_.points)),
+                                std::min(fewest_directions, settings_.directions), settings_.directions);
+    if (std::string(method_.name) != "directions") few.direction_set = "stratified";
+    const ThinScene first(exchange_, first_points);
+    work(session_, directions, first.scene(), few, known_.light, loose);
+    const double traced = kernel_seconds(session_, "trace_directions"),
+                 received = kernel_seconds(session_, "receive_by_directions");
+    Worked coarse = work(session_, directions, exchange_, few, known_.light, settings_.tolerance);
+    if (std::string(method_.name) != "directions") return coarse;
+    const DirectionPattern pattern =
+        settings_.direction_set == "hemicube" ? DirectionPattern::hemicube : DirectionPattern::stratified;
+    const double all =
+        static_cast<double>(direction_set(pattern, static_cast<unsigned>(settings_.directions)).weights.size());
+    const double ratio = all / std::max(1.0, statistic(*coarse.prepared, "directions"));
+    const double trace = kernel_seconds(session_, "trace_directions") - traced,
+                 receive = kernel_seconds(session_, "receive_by_directions") - received;
+    const auto need = [&](std::uint64_t left) {
+      return static_cast<double>(exchange_need("directions", settings_, count_, left).usual);
+    };
+    const double again = coarse.applies * (1.0 - need(session_.bytes_left()) / need(UINT64_MAX));
+    estimate_.method_seconds =
+        coarse.prepare_seconds - trace + coarse.solve_seconds - receive + ratio * (trace * (1.0 + again) + receive);
+    estimate_.rays = static_cast<double>(count_.points) * all * (1.0 + again);
+    return coarse;
+  }
+
+  RadiosityMap thin_map(const ThinScene& thin, double& seconds) {
+    const NoVMapsKept anew;
+    RadiosityMap clusters = cluster_points(session_, thin.scene(), settings_);
+    const Clock::time_point begin = Clock::now();
+    RadiosityMap map = find_visibility(session_, thin.scene(), settings_, std::move(clusters), LinkEstimate{}, quiet);
+    seconds = seconds_since(begin);
+    return map;
+  }
+
+  void sample_fmm() {
+    double seconds = 0.0;
+    {
+      const ThinScene few(exchange_, first_points);
+      RadiosityMap map = thin_map(few, seconds);
+      work(session_, method_, few.scene(), settings_, known_.light, loose, std::move(map));
+    }
+    const ThinScene thin(exchange_, map_points);
+    RadiosityMap map = thin_map(thin, seconds);
+    const double made = static_cast<double>(map.vmap.links.size()),
+                 asked = static_cast<double>(map.vmap.statistics.rays);
+    const LinkEstimate made_links{0.0, made, asked,
+                                  made * sizeof(Link) + static_cast<double>(map.vmap.point_shares.size())};
+    const auto order = static_cast<unsigned>(settings_.order);
+    const double thin_bytes = static_cast<double>(fmm_bytes(map.tree, order, made_links));
+    const Worked worked = work(session_, method_, thin.scene(), settings_, known_.light, loose, std::move(map));
+    LinkEstimate all = thin.count() == count_.points ? made_links : known_.links;
+    const double most = static_cast<double>(most_vmap_rays(settings_, count_.points));
+    if (most > 0.0 && all.rays > most) // what is left then is taken as it is
+      for (double LinkEstimate::*figure : {&LinkEstimate::links, &LinkEstimate::bytes, &LinkEstimate::rays})
+        all.*figure *= most / all.rays;
+    const double more_links = made > 0.0 ? all.links / made : 1.0;
+    constexpr double few_rays = 1000.0; // where hardly anything is hidden, the host's part is all
+    estimate_.vmap_seconds = seconds * (asked > few_rays ? all.rays / asked : more_links);
+    estimate_.method_seconds = more_links * (worked.prepare_seconds + estimate_.applies * worked.apply_seconds());
+    estimate_.links = all.links;
+    estimate_.rays = all.rays;
+    const double rays_a_second = asked / std::max(1e-6, seconds);
+    estimate_.vmap_bytes = vmap_bytes(
+        count_.points, static_cast<std::size_t>(std::clamp(launch_seconds * rays_a_second, 16384.0, 4194304.0)));
+    estimate_.method_bytes = static_cast<std::uint64_t>(static_cast<double>(fmm_bytes(known_.tree, order, all)) *
+                                                        static_cast<double>(worked.bytes) / std::max(1.0, thin_bytes));
+  }
+
+  void sample_cones() {
+    RadiositySettings first = settings_;
+    first.voxels = 32;
+    warm(first);
+    Worked worked = work(session_, method_, exchange_, settings_, known_.light, loose);
+    estimate_.method_seconds = worked.prepare_seconds + estimate_.applies * worked.apply_seconds();
+    estimate_.method_bytes =
+        std::max(worked.bytes, exchange_need("cones", settings_, count_, 0).least) + sizeof(cl_float4) * count_.pool;
+    estimate_.at_pixels = worked.prepared->cones_of(known_.light.direct);
+  }
+
+  void sample_direct() {
+    warm(settings_);
+    const ThinScene thin(exchange_, pair_points);
+    const Worked worked = work(session_, method_, thin.scene(), settings_, known_.light, loose);
+    const double pairs = thin.ratio() * thin.ratio();
+    estimate_.method_seconds = pairs * (worked.prepare_seconds + estimate_.applies * worked.apply_seconds());
+    estimate_.rays = pairs * static_cast<double>(worked.prepared->rays());
+  }
+
+  /// One pass, and some: those after the first read what it has seen, where that is kept.
+  void sample_gather(const Solution& coarse) {
+    const unsigned passes = settings_.passes > 0 ? static_cast<unsigned>(settings_.passes)
+                                                 : passes_until(coarse.history, settings_.tolerance);
+    const ThinScene thin(exchange_, pair_points);
+    const bool all = settings_.sampling == "all";
+    constexpr int more = 4;
+    RadiositySettings one = settings_;
+    one.window = std::max(1, static_cast<int>(std::lround(settings_.window / thin.ratio())));
+    one.passes = 1;
+    warm(one);
+    const Worked first = work(session_, method_, thin.scene(), one, known_.light, loose);
+    one.passes = 1 + more;
+    const Worked some = work(session_, method_, thin.scene(), one, known_.light, loose);
+    const double more_senders = all ? thin.ratio() : thin.ratio() * one.window / settings_.window;
+    const double pairs = thin.ratio() * more_senders;
+    const double a_pass = std::max(0.0, some.solve_seconds - first.solve_seconds) / more;
+    estimate_.applies = settings_.sampling == "adaptive" ? std::max(passes, 1u + more) : passes;
+    estimate_.method_seconds =
+        pairs * (first.prepare_seconds + first.solve_seconds + (estimate_.applies - 1.0) * a_pass);
+    const double rays = static_cast<double>(first.prepared->rays()),
+                 later = (static_cast<double>(some.prepared->rays()) - rays) / more;
+    estimate_.rays = pairs * (rays + (estimate_.applies - 1.0) * later);
+  }
+
+  Session& session_;
+  const ExchangeScene& exchange_;
+  const RadiositySettings& settings_;
+  const RadiosityMethod& method_;
+  const ExchangeKnown& known_;
+  ExchangedCount count_;
+  ExchangeEstimate estimate_;
+};
+
+} // namespace
+
+ExchangeEstimate sample_exchange(Session& session, const ExchangeScene& exchange, const RadiositySettings& settings,
+                                 const RadiosityMethod& method, const ExchangeKnown& known) {
+  return Sampler(session, exchange, settings, method, known).estimate();
+}
+
+unsigned passes_until(const std::vector<double>& history, double tolerance) {
+  constexpr unsigned most = 10000; // as solve_by_bounces ends
+  double before = 1.0, residual = 1.0, rate = 0.0;
+  for (unsigned pass = 1; pass < most; ++pass) {
+    if (pass <= history.size())
+      residual = history[pass - 1];
+    else
+      residual *= rate;
+    rate = std::min(1.0, residual / before);
+    before = residual;
+    if (!(residual > 0.0) || residual * rate <= tolerance * std::max(1e-12, 1.0 - rate)) return pass;
+  }
+  return most;
+}
+
+} // namespace pointgi
