@@ -48,7 +48,9 @@ constexpr double enough_seconds = 0.15; ///< of the small picture
 /// Seconds of writing a channel of a pixel to the EXR, and a pixel to the PNG, on the machine of
 /// docs/user/quality-and-time.md: little beside all else, so that another machine's do not matter.
 constexpr double seconds_of_channel = 6e-8, seconds_of_png_pixel = 4e-7;
-constexpr double more_rounds = 1.5; ///< what goes round between surfaces and mirrors, of the first round
+/// Of light that goes round between surfaces and mirrors: rounds after the first, whose solutions together take about
+/// as long as the first one.
+constexpr double more_rounds = 2.0, rounds_solved = 1.0;
 
 /// While one lives, the context's log of stages is another one.
 class OtherLog {
@@ -165,7 +167,8 @@ private:
     const CausticSettings& caustics = request_.scene.caustics;
     const bool goes_round = caustics.feedback && caustics.indirect && request_.lighting.has_specular();
     StageEstimate& solved =
-        add(method->name, why, direct_seconds + (goes_round ? more_rounds : 1.0) * found.method_seconds,
+        add(method->name, why,
+            direct_seconds + found.prepare_seconds + (goes_round ? 1.0 + rounds_solved : 1.0) * found.solve_seconds,
             std::max(light_bytes, found.method_bytes));
     solved.items = static_cast<double>(pool_);
     solved.unit = "points";
@@ -201,30 +204,29 @@ private:
     held_ = std::max(held_, session_.held_bytes());
     const long long all = request_.scene.caustics.photons;
     Caustics first, some;
-    fly(std::min(all, first_photons), first);
+    fly(std::min(all, first_photons), first); // builds its kernels
     if (const StageRecord record = stages_.records().back(); !record.ran) return skip("photon", record.reason);
-    const double few_seconds = fly(std::min(all, first_photons), first),
-                 some_seconds = fly(std::min(all, few_photons), some);
-    const double flown = static_cast<double>(std::min(all, few_photons) - std::min(all, first_photons));
-    const double a_photon = flown > 0.0 ? std::max(0.0, some_seconds - few_seconds) / flown : 0.0;
+    upload_caustics(session_, first, request_, stages_);
+    const double few_seconds = fly(std::min(all, few_photons), some), flying = some.ledger->device_seconds;
     const double more = static_cast<double>(all) / static_cast<double>(std::min(all, few_photons));
-    double seconds = some_seconds + a_photon * static_cast<double>(all - std::min(all, few_photons));
-    upload_caustics(session_, first, request_, stages_); // builds its kernels
+    const bool from_surfaces = request_.scene.caustics.indirect && exchanges_;
+    const double flights = from_surfaces ? request_.scene.caustics.feedback ? 2.0 + more_rounds : 2.0 : 1.0;
+    // Each looks for its leaves; what later rounds send is little.
+    double seconds = flights * (few_seconds - flying) + std::min(flights, 2.0) * more * flying;
     Clock::time_point then = Clock::now();
     build_photon_map(some.photons);
     seconds += (more - 1.0) * seconds_since(then);
     then = Clock::now();
     light_.light.photons = upload_caustics(session_, some, request_, stages_);
     seconds += seconds_since(then);
-    const bool from_surfaces = request_.scene.caustics.indirect && exchanges_;
     const auto stored =
         static_cast<std::uint64_t>(more * static_cast<double>(some.photons.size())) * (from_surfaces ? 2 : 1);
     const std::uint64_t map = photon_map_bytes(std::min<std::uint64_t>(stored, most_stored_photons), pool_);
     StageEstimate& photon = add("photon",
                                 std::to_string(all) + " photons by way of specular surfaces" +
                                     (from_surfaces ? ", and as many from diffuse ones" : ""),
-                                (from_surfaces ? 2.0 : 1.0) * seconds, map + 2 * sizeof(cl_float4) * pool_);
-    photon.items = (from_surfaces ? 2.0 : 1.0) * more * static_cast<double>(some.ledger->aimed);
+                                seconds, map + 2 * sizeof(cl_float4) * pool_);
+    photon.items = more * static_cast<double>(some.ledger->aimed) + (from_surfaces ? static_cast<double>(all) : 0.0);
     photon.unit = "photons";
     held_ += map;
   }

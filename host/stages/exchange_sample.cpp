@@ -11,11 +11,15 @@ namespace pointgi {
 
 namespace {
 
-/// Rays of the solution that tells how many applies there will be: about half a second of two cores.
-constexpr double coarse_rays = 1.5e6;
+/// Rays of the solution that tells how many applies there will be, and of the points that tell what a ray of
+/// "directions" costs: each about half a second of two cores.
+constexpr double coarse_rays = 6e5, traced_rays = 1e6;
 constexpr int fewest_directions = 4;
+/// Neighbours that stay together where rays of neighbours go together.
+constexpr std::size_t neighbours = 256;
 /// Points of the samples: pairs of 1500 are a million, and so are the rays of a map of 3000.
 constexpr std::size_t pair_points = 1500, map_points = 3000, first_points = 256;
+constexpr std::uint64_t most_left = std::uint64_t{1} << 60; ///< room for all hits
 /// Of solutions that only tell what an apply costs.
 constexpr double loose = 0.5;
 
@@ -27,10 +31,11 @@ double seconds_since(Clock::time_point begin) {
 
 void quiet(const std::string&) {}
 
-/// The scene with every so manieth of the points that exchange light; all still block it.
+/// The scene with some of the points that exchange light, `together` of them from each of evenly spaced places of the
+/// pool; all still block it.
 class ThinScene {
 public:
-  ThinScene(const ExchangeScene& whole, std::size_t most) : whole_(whole) {
+  ThinScene(const ExchangeScene& whole, std::size_t most, std::size_t together = 1) : whole_(whole) {
     const std::vector<std::uint32_t> places = exchanging_points(whole);
     points_.assign(whole.points.begin(), whole.points.end());
     exchanges_.assign(whole.exchanges.begin(), whole.exchanges.end());
@@ -38,15 +43,26 @@ public:
       exchanges_.resize(std::max(exchanges_.size(), material_of(s) + 1), 1);
     const auto other = static_cast<float>(exchanges_.size());
     exchanges_.push_back(0);
-    const double share = std::min(1.0, static_cast<double>(most) / std::max<double>(1.0, double(places.size())));
+    const double share =
+        std::min(1.0, static_cast<double>(most) / static_cast<double>(std::max<std::size_t>(1, places.size())));
     double at = 0.0;
-    for (const std::uint32_t p : places)
+    for (std::size_t first = 0; first < places.size(); first += together) {
+      const std::size_t end = std::min(places.size(), first + together);
       if ((at += share) >= 1.0 - 1e-9) {
         at -= 1.0;
-        ++count_;
-      } else
-        points_[p].material += other - std::floor(points_[p].material); // what sides it has stays
+        count_ += end - first;
+        continue;
+      }
+      for (std::size_t k = first; k < end; ++k) // what sides it has stays
+        points_[places[k]].material += other - std::floor(points_[places[k]].material);
+    }
     ratio_ = count_ > 0 ? static_cast<double>(places.size()) / static_cast<double>(count_) : 1.0;
+  }
+
+  /// Those that are left stand for all: they send as much, and the light goes as often from bounce to bounce.
+  void spread_areas() {
+    for (Splat& s : points_)
+      s.area *= static_cast<float>(ratio_);
   }
 
   ExchangeScene scene() const {
@@ -115,15 +131,19 @@ public:
   ExchangeEstimate estimate() {
     if (count_.points == 0) return {};
     const std::string name = method_.name;
+    estimate_.method_bytes = exchange_need(name, settings_, count_, session_.bytes_left()).usual;
+    if (name == "gather") {
+      sample_gather();
+      return std::move(estimate_);
+    }
     const Worked coarse = solve_coarsely();
     estimate_.applies = coarse.applies;
-    estimate_.method_bytes = exchange_need(name, settings_, count_, session_.bytes_left()).usual;
-    if (name == "fmm")
+    if (name == "directions")
+      sample_directions(coarse);
+    else if (name == "fmm")
       sample_fmm();
     else if (name == "cones")
       sample_cones();
-    else if (name == "gather")
-      sample_gather(coarse.solution);
     else if (name == "direct")
       sample_direct();
     return std::move(estimate_);
@@ -135,34 +155,45 @@ private:
     return work(session_, method_, few.scene(), settings, known_.light, loose, std::move(map));
   }
 
-  /// By few directions, whatever the method; where it is "directions", what the others cost follows.
+  /// By few directions, whatever the method.
   Worked solve_coarsely() {
     const RadiosityMethod& directions = *radiosity_method("directions");
     RadiositySettings few = settings_;
     few.directions = std::clamp(static_cast<int>(coarse_rays / static_cast<double>(count_.points)),
                                 std::min(fewest_directions, settings_.directions), settings_.directions);
-    if (std::string(method_.name) != "directions") few.direction_set = "stratified";
+    few.direction_set = "stratified";
     const ThinScene first(exchange_, first_points);
     work(session_, directions, first.scene(), few, known_.light, loose);
-    const double traced = kernel_seconds(session_, "trace_directions"),
-                 received = kernel_seconds(session_, "receive_by_directions");
+    const double received = kernel_seconds(session_, "receive_by_directions"),
+                 traced = kernel_seconds(session_, "trace_directions");
     Worked coarse = work(session_, directions, exchange_, few, known_.light, settings_.tolerance);
-    if (std::string(method_.name) != "directions") return coarse;
-    const DirectionPattern pattern =
-        settings_.direction_set == "hemicube" ? DirectionPattern::hemicube : DirectionPattern::stratified;
-    const double all =
-        static_cast<double>(direction_set(pattern, static_cast<unsigned>(settings_.directions)).weights.size());
+    coarse_receive_ = kernel_seconds(session_, "receive_by_directions") - received;
+    coarse_trace_ = kernel_seconds(session_, "trace_directions") - traced;
+    return coarse;
+  }
+
+  /// Rays of all directions from some points: of few directions fewer go together. What is done with the hits, and what
+  /// the host does, the coarse solution tells.
+  void sample_directions(const Worked& coarse) {
+    const bool hemicube = settings_.direction_set == "hemicube";
+    const auto all =
+        static_cast<double>(direction_set(hemicube ? DirectionPattern::hemicube : DirectionPattern::stratified,
+                                          static_cast<unsigned>(settings_.directions))
+                                .weights.size());
+    if (hemicube) warm(settings_);
+    const ThinScene thin(exchange_, static_cast<std::size_t>(std::max(traced_rays / all, 64.0)), neighbours);
+    const double traced = kernel_seconds(session_, "trace_directions");
+    const Worked worked = work(session_, method_, thin.scene(), settings_, known_.light, loose);
+    const double trace = thin.ratio() * (kernel_seconds(session_, "trace_directions") - traced);
     const double ratio = all / std::max(1.0, statistic(*coarse.prepared, "directions"));
-    const double trace = kernel_seconds(session_, "trace_directions") - traced,
-                 receive = kernel_seconds(session_, "receive_by_directions") - received;
     const auto need = [&](std::uint64_t left) {
       return static_cast<double>(exchange_need("directions", settings_, count_, left).usual);
     };
-    const double again = coarse.applies * (1.0 - need(session_.bytes_left()) / need(UINT64_MAX));
-    estimate_.method_seconds =
-        coarse.prepare_seconds - trace + coarse.solve_seconds - receive + ratio * (trace * (1.0 + again) + receive);
+    // Hits that are not kept are traced again.
+    const double again = coarse.applies * (1.0 - need(session_.bytes_left()) / need(most_left));
+    estimate_.solve_seconds = coarse.solve_seconds + (ratio - 1.0) * coarse_receive_ + again * trace;
+    estimate_.prepare_seconds = coarse.prepare_seconds - coarse_trace_ + trace;
     estimate_.rays = static_cast<double>(count_.points) * all * (1.0 + again);
-    return coarse;
   }
 
   RadiosityMap thin_map(const ThinScene& thin, double& seconds) {
@@ -198,7 +229,8 @@ private:
     const double more_links = made > 0.0 ? all.links / made : 1.0;
     constexpr double few_rays = 1000.0; // where hardly anything is hidden, the host's part is all
     estimate_.vmap_seconds = seconds * (asked > few_rays ? all.rays / asked : more_links);
-    estimate_.method_seconds = more_links * (worked.prepare_seconds + estimate_.applies * worked.apply_seconds());
+    estimate_.prepare_seconds = more_links * worked.prepare_seconds;
+    estimate_.solve_seconds = more_links * estimate_.applies * worked.apply_seconds();
     estimate_.links = all.links;
     estimate_.rays = all.rays;
     const double rays_a_second = asked / std::max(1e-6, seconds);
@@ -213,7 +245,8 @@ private:
     first.voxels = 32;
     warm(first);
     Worked worked = work(session_, method_, exchange_, settings_, known_.light, loose);
-    estimate_.method_seconds = worked.prepare_seconds + estimate_.applies * worked.apply_seconds();
+    estimate_.prepare_seconds = worked.prepare_seconds;
+    estimate_.solve_seconds = estimate_.applies * worked.apply_seconds();
     estimate_.method_bytes =
         std::max(worked.bytes, exchange_need("cones", settings_, count_, 0).least) + sizeof(cl_float4) * count_.pool;
     estimate_.at_pixels = worked.prepared->cones_of(known_.light.direct);
@@ -224,32 +257,34 @@ private:
     const ThinScene thin(exchange_, pair_points);
     const Worked worked = work(session_, method_, thin.scene(), settings_, known_.light, loose);
     const double pairs = thin.ratio() * thin.ratio();
-    estimate_.method_seconds = pairs * (worked.prepare_seconds + estimate_.applies * worked.apply_seconds());
+    estimate_.prepare_seconds = pairs * worked.prepare_seconds;
+    estimate_.solve_seconds = pairs * estimate_.applies * worked.apply_seconds();
     estimate_.rays = pairs * static_cast<double>(worked.prepared->rays());
   }
 
-  /// One pass, and some: those after the first read what it has seen, where that is kept.
-  void sample_gather(const Solution& coarse) {
-    const unsigned passes = settings_.passes > 0 ? static_cast<unsigned>(settings_.passes)
-                                                 : passes_until(coarse.history, settings_.tolerance);
-    const ThinScene thin(exchange_, pair_points);
+  /// One pass, and some: those after the first read what it has seen, where that is kept. Their light tells how many
+  /// there will be: that of few senders fades otherwise than that of all.
+  void sample_gather() {
+    ThinScene thin(exchange_, pair_points);
+    thin.spread_areas();
     const bool all = settings_.sampling == "all";
-    constexpr int more = 4;
+    constexpr unsigned more = 8;
     RadiositySettings one = settings_;
     one.window = std::max(1, static_cast<int>(std::lround(settings_.window / thin.ratio())));
     one.passes = 1;
     warm(one);
     const Worked first = work(session_, method_, thin.scene(), one, known_.light, loose);
     one.passes = 1 + more;
-    const Worked some = work(session_, method_, thin.scene(), one, known_.light, loose);
-    const double more_senders = all ? thin.ratio() : thin.ratio() * one.window / settings_.window;
-    const double pairs = thin.ratio() * more_senders;
-    const double a_pass = std::max(0.0, some.solve_seconds - first.solve_seconds) / more;
-    estimate_.applies = settings_.sampling == "adaptive" ? std::max(passes, 1u + more) : passes;
-    estimate_.method_seconds =
-        pairs * (first.prepare_seconds + first.solve_seconds + (estimate_.applies - 1.0) * a_pass);
+    const Worked some = work(session_, method_, thin.scene(), one, known_.light, settings_.tolerance);
+    const double later_passes = std::max(1.0, some.applies - 1.0);
+    const double a_pass = std::max(0.0, some.solve_seconds - first.solve_seconds) / later_passes;
+    estimate_.applies = settings_.passes > 0 ? static_cast<unsigned>(settings_.passes)
+                                             : passes_until(some.solution.history, settings_.tolerance);
+    const double pairs = thin.ratio() * (all ? thin.ratio() : thin.ratio() * one.window / settings_.window);
+    estimate_.prepare_seconds = pairs * first.prepare_seconds;
+    estimate_.solve_seconds = pairs * (first.solve_seconds + (estimate_.applies - 1.0) * a_pass);
     const double rays = static_cast<double>(first.prepared->rays()),
-                 later = (static_cast<double>(some.prepared->rays()) - rays) / more;
+                 later = (static_cast<double>(some.prepared->rays()) - rays) / later_passes;
     estimate_.rays = pairs * (rays + (estimate_.applies - 1.0) * later);
   }
 
@@ -259,6 +294,7 @@ private:
   const RadiosityMethod& method_;
   const ExchangeKnown& known_;
   ExchangedCount count_;
+  double coarse_receive_ = 0.0, coarse_trace_ = 0.0; ///< seconds of the device
   ExchangeEstimate estimate_;
 };
 

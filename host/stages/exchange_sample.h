@@ -6,12 +6,12 @@ namespace pointgi {
 
 /// Of the stage `vmap` and that of the method.
 struct ExchangeEstimate {
-  double vmap_seconds = 0.0;                      ///< 0 where the method needs no map
-  double method_seconds = 0.0;                    ///< without direct light
-  std::uint64_t vmap_bytes = 0, method_bytes = 0; ///< of the device, besides what it holds before
-  double links = 0.0, rays = 0.0;                 ///< of the map; IndirectLight::rays
-  unsigned applies = 0;                           ///< of the operator, or passes
-  std::optional<DeviceCones> at_pixels;           ///< as IndirectLight has them, of some light
+  double vmap_seconds = 0.0;                         ///< 0 where the method needs no map
+  double prepare_seconds = 0.0, solve_seconds = 0.0; ///< of the method's stage, without direct light
+  std::uint64_t vmap_bytes = 0, method_bytes = 0;    ///< of the device, besides what it holds before
+  double links = 0.0, rays = 0.0;                    ///< of the map; IndirectLight::rays
+  unsigned applies = 0;                              ///< of the operator, or passes
+  std::optional<DeviceCones> at_pixels;              ///< as IndirectLight has them, of some light
 };
 
 /// What is known of a scene before light is exchanged in it.
