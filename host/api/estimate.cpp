@@ -221,12 +221,18 @@ private:
     seconds += seconds_since(then);
     const auto stored =
         static_cast<std::uint64_t>(more * static_cast<double>(some.photons.size())) * (from_surfaces ? 2 : 1);
+    const double items =
+        more * static_cast<double>(some.ledger->aimed) + (from_surfaces ? static_cast<double>(all) : 0.0);
+    // Launches are as long as those of so few would have grown to be.
+    const double a_launch = launch_seconds * static_cast<double>(some.ledger->aimed) / std::max(1e-9, flying);
+    const auto flights_bytes =
+        static_cast<std::uint64_t>(std::min({a_launch, 262144.0, 0.5 * items}) * sizeof(PhotonFlight));
     const std::uint64_t map = photon_map_bytes(std::min<std::uint64_t>(stored, most_stored_photons), pool_);
     StageEstimate& photon = add("photon",
                                 std::to_string(all) + " photons by way of specular surfaces" +
                                     (from_surfaces ? ", and as many from diffuse ones" : ""),
-                                seconds, map + 2 * sizeof(cl_float4) * pool_);
-    photon.items = more * static_cast<double>(some.ledger->aimed) + (from_surfaces ? static_cast<double>(all) : 0.0);
+                                seconds, std::max(flights_bytes, map + 2 * sizeof(cl_float4) * pool_));
+    photon.items = items;
     photon.unit = "photons";
     held_ += map;
   }

@@ -206,13 +206,10 @@ private:
   }
 
   void sample_fmm() {
-    double seconds = 0.0;
-    {
-      const ThinScene few(exchange_, first_points);
-      RadiosityMap map = thin_map(few, seconds);
-      work(session_, method_, few.scene(), settings_, known_.light, loose, std::move(map));
-    }
-    const ThinScene thin(exchange_, map_points);
+    double first_seconds = 0.0, seconds = 0.0;
+    const ThinScene few(exchange_, first_points), thin(exchange_, map_points);
+    work(session_, method_, few.scene(), settings_, known_.light, loose, thin_map(few, first_seconds));
+    const double first_asked = static_cast<double>(thin_map(few, first_seconds).vmap.statistics.rays);
     RadiosityMap map = thin_map(thin, seconds);
     const double made = static_cast<double>(map.vmap.links.size()),
                  asked = static_cast<double>(map.vmap.statistics.rays);
@@ -227,13 +224,16 @@ private:
       for (double LinkEstimate::*figure : {&LinkEstimate::links, &LinkEstimate::bytes, &LinkEstimate::rays})
         all.*figure *= most / all.rays;
     const double more_links = made > 0.0 ? all.links / made : 1.0;
-    constexpr double few_rays = 1000.0; // where hardly anything is hidden, the host's part is all
-    estimate_.vmap_seconds = seconds * (asked > few_rays ? all.rays / asked : more_links);
+    // What blocks is looked through once, however few points ask. Where hardly anything is hidden, links tell the rest.
+    constexpr double few_rays = 1000.0;
+    const double asking = std::max(0.0, seconds - first_seconds), more_asked = asked - first_asked;
+    estimate_.vmap_seconds =
+        seconds - asking + asking * (more_asked > few_rays ? (all.rays - first_asked) / more_asked : more_links);
     estimate_.prepare_seconds = more_links * worked.prepare_seconds;
     estimate_.solve_seconds = more_links * estimate_.applies * worked.apply_seconds();
     estimate_.links = all.links;
     estimate_.rays = all.rays;
-    const double rays_a_second = asked / std::max(1e-6, seconds);
+    const double rays_a_second = more_asked / std::max(1e-6, asking);
     estimate_.vmap_bytes = vmap_bytes(
         count_.points, static_cast<std::size_t>(std::clamp(launch_seconds * rays_a_second, 16384.0, 4194304.0)));
     estimate_.method_bytes = static_cast<std::uint64_t>(static_cast<double>(fmm_bytes(known_.tree, order, all)) *
