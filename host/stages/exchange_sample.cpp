@@ -196,21 +196,16 @@ private:
     estimate_.rays = static_cast<double>(count_.points) * all * (1.0 + again);
   }
 
-  RadiosityMap thin_map(const ThinScene& thin, double& seconds) {
+  RadiosityMap thin_map(const ThinScene& thin) {
     const NoVMapsKept anew;
-    RadiosityMap clusters = cluster_points(session_, thin.scene(), settings_);
-    const Clock::time_point begin = Clock::now();
-    RadiosityMap map = find_visibility(session_, thin.scene(), settings_, std::move(clusters), LinkEstimate{}, quiet);
-    seconds = seconds_since(begin);
-    return map;
+    return find_visibility(session_, thin.scene(), settings_, cluster_points(session_, thin.scene(), settings_),
+                           LinkEstimate{}, quiet);
   }
 
   void sample_fmm() {
-    double first_seconds = 0.0, seconds = 0.0;
     const ThinScene few(exchange_, first_points), thin(exchange_, map_points);
-    work(session_, method_, few.scene(), settings_, known_.light, loose, thin_map(few, first_seconds));
-    const double first_asked = static_cast<double>(thin_map(few, first_seconds).vmap.statistics.rays);
-    RadiosityMap map = thin_map(thin, seconds);
+    work(session_, method_, few.scene(), settings_, known_.light, loose, thin_map(few));
+    RadiosityMap map = thin_map(thin);
     const double made = static_cast<double>(map.vmap.links.size()),
                  asked = static_cast<double>(map.vmap.statistics.rays);
     const LinkEstimate made_links{0.0, made, asked,
@@ -218,22 +213,19 @@ private:
     const auto order = static_cast<unsigned>(settings_.order);
     const double thin_bytes = static_cast<double>(fmm_bytes(map.tree, order, made_links));
     const Worked worked = work(session_, method_, thin.scene(), settings_, known_.light, loose, std::move(map));
-    LinkEstimate all = thin.count() == count_.points ? made_links : known_.links;
+    LinkEstimate all = known_.links;
     const double most = static_cast<double>(most_vmap_rays(settings_, count_.points));
     if (most > 0.0 && all.rays > most) // what is left then is taken as it is
-      for (double LinkEstimate::*figure : {&LinkEstimate::links, &LinkEstimate::bytes, &LinkEstimate::rays})
+      for (double LinkEstimate::*figure :
+           {&LinkEstimate::links, &LinkEstimate::bytes, &LinkEstimate::seconds, &LinkEstimate::rays})
         all.*figure *= most / all.rays;
     const double more_links = made > 0.0 ? all.links / made : 1.0;
-    // What blocks is looked through once, however few points ask. Where hardly anything is hidden, links tell the rest.
-    constexpr double few_rays = 1000.0;
-    const double asking = std::max(0.0, seconds - first_seconds), more_asked = asked - first_asked;
-    estimate_.vmap_seconds =
-        seconds - asking + asking * (more_asked > few_rays ? (all.rays - first_asked) / more_asked : more_links);
+    estimate_.vmap_seconds = all.seconds;
     estimate_.prepare_seconds = more_links * worked.prepare_seconds;
     estimate_.solve_seconds = more_links * estimate_.applies * worked.apply_seconds();
     estimate_.links = all.links;
     estimate_.rays = all.rays;
-    const double rays_a_second = more_asked / std::max(1e-6, asking);
+    const double rays_a_second = all.rays / std::max(1e-6, all.seconds);
     estimate_.vmap_bytes = vmap_bytes(
         count_.points, static_cast<std::size_t>(std::clamp(launch_seconds * rays_a_second, 16384.0, 4194304.0)));
     estimate_.method_bytes = static_cast<std::uint64_t>(static_cast<double>(fmm_bytes(known_.tree, order, all)) *
