@@ -2,6 +2,7 @@
 #include "host/error.h"
 #include "host/run.h"
 #include "host/stages/lit_file.h"
+#include "host/stages/require_memory.h"
 #include "host/stages/view_warnings.h"
 #include <filesystem>
 #include <fmt/format.h>
@@ -65,6 +66,9 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
   if (!options.path_tracing) require_possible_radiosity(from.scene);
   Session& session = from.context->session;
   StageLog& stages = from.context->stages;
+  const PreparedScene& ready = from.ready;
+  require_light_memory(session, parts_->request(),
+                       {from.scene, ready.points, ready.ids, ready.first_ids, ready.frame.side}, options.photons);
   IndirectLight& indirect = parts_->light.indirect;
   if (options.photons || options.path_tracing) {
     parts_->light = run_light_stages(session, from.ready.on_device, parts_->request(), stages);

@@ -37,6 +37,11 @@ struct RenderOptions : LightOptions {
   bool progressive = false;      ///< a first picture soon, and better ones after it
 };
 
+/// The picture that `info` tells the cost of.
+struct InfoOptions : RenderOptions {
+  bool no_estimate = false; ///< no device is opened
+};
+
 struct BakeOptions : LightOptions {
   bool sky = false;    ///< the share of the sky that each point sees, too
   bool passes = false; ///< the lit cloud after each pass, too
@@ -81,7 +86,7 @@ ExitCode run_bake(const BakeOptions& options);
 ExitCode run_profile(const ProfileOptions& options);
 ExitCode run_measure(const MeasureCommand& command);
 ExitCode run_compare(const CompareOptions& options);
-ExitCode run_info(const std::string& file);
+ExitCode run_info(const InfoOptions& options);
 ExitCode run_devices(bool json, bool check, const std::string& device);
 
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #include "host/app/command_run.h"
-#include "host/app/commands.h"
+#include "host/app/info_estimate.h"
+#include "host/app/light_command.h"
 #include "host/cloud/mls_patches.h"
 #include "host/lights/environment_map.h"
 #include "host/passes/build_pools.h"
@@ -88,10 +89,11 @@ float percentile(std::vector<float> values, double share) {
 
 } // namespace
 
-ExitCode run_info(const std::string& file) {
-  const CommandRun run(false);
+ExitCode run_info(const InfoOptions& options) {
+  CommandRun run(options.quiet);
+  const std::string& file = options.input;
   const bool is_scene = is_scene_file(file);
-  const Scene scene = load_any(file, {});
+  const Scene scene = load_any(file, picture_overrides_of(options));
   const WorldSplats splats = load_splats(scene);
   for (std::size_t i = 0; i < scene.clouds.size(); ++i)
     print_report(scene.clouds[i].file, splats.reports[i]);
@@ -129,6 +131,8 @@ ExitCode run_info(const std::string& file) {
               static_cast<double>(octree.extra_splats) / static_cast<double>(cloud.size()));
   std::printf("  memory      %.1f MiB of pools, %.0f bytes a splat\n", static_cast<double>(octree.bytes) / 1048576.0,
               static_cast<double>(octree.bytes) / static_cast<double>(cloud.size()));
+  std::fflush(stdout); // the estimate takes some seconds
+  if (!options.no_estimate) print_estimate(options, run);
   return ExitCode::done;
 }
 

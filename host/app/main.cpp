@@ -166,6 +166,19 @@ void add_measure_options(CLI::App& command, MeasureCommand& measure, Common& com
       ->expected(1);
 }
 
+void add_info_options(CLI::App& command, InfoOptions& info, Common& common) {
+  command.add_option("FILE.ply|SCENE.toml", info.input, "what to look at")->required();
+  command.add_option("--size", info.size, "image size, WIDTHxHEIGHT, of the picture whose cost is told");
+  command.add_option("--spp", info.spp, "samples a pixel of it")->check(CLI::Range(1, 65536));
+  command.add_option("--quality", info.quality, "its quality, as for render")
+      ->check(CLI::IsMember({"draft", "normal", "high"}));
+  add_device_options(command, info.device, common);
+  command.add_option("--set", info.overrides, "a value of the scene file, as for render; may repeat")
+      ->take_all()
+      ->expected(1);
+  command.add_flag("--no-estimate", info.no_estimate, "tell nothing of stages, seconds and memory; opens no device");
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Global illumination of point clouds, without meshing them."};
   app.set_version_flag("--version", "pointgi " POINTGI_VERSION);
@@ -239,9 +252,10 @@ int run(int argc, char** argv) {
       app.add_subcommand("measure", "measure what time buys: error against seconds of a scene's settings");
   add_measure_options(*measure_command, measure, common);
 
-  std::string info_file;
-  CLI::App* info_command = app.add_subcommand("info", "what is in a cloud or scene");
-  info_command->add_option("FILE.ply|SCENE.toml", info_file, "what to look at")->required();
+  InfoOptions info;
+  CLI::App* info_command =
+      app.add_subcommand("info", "what is in a cloud or scene, which stages its picture needs, and what they cost");
+  add_info_options(*info_command, info, common);
 
   CompareOptions compare;
   CLI::App* compare_command = app.add_subcommand("compare", "how far two pictures are apart");
@@ -285,7 +299,9 @@ int run(int argc, char** argv) {
   measure.quiet = render.quiet;
   if (measure_command->parsed()) return code_of(run_measure(measure));
   if (compare_command->parsed()) return code_of(run_compare(compare));
-  if (info_command->parsed()) return code_of(run_info(info_file));
+  info.device = environment_or(info.device, "POINTGI_DEVICE");
+  info.quiet = render.quiet;
+  if (info_command->parsed()) return code_of(run_info(info));
   return code_of(run_devices(json, check, environment_or(checked_device, "POINTGI_DEVICE")));
 }
 

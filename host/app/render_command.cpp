@@ -35,8 +35,9 @@ std::vector<int> whole_numbers(const std::string& text, char separator, std::siz
   return numbers;
 }
 
-/// Flags win over the scene file; they become overrides, so that one place checks both.
-std::vector<std::string> all_overrides_of(const RenderOptions& options) {
+} // namespace
+
+std::vector<std::string> picture_overrides_of(const RenderOptions& options) {
   std::vector<std::string> overrides = overrides_of(options);
   if (!options.size.empty()) {
     const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
@@ -48,6 +49,8 @@ std::vector<std::string> all_overrides_of(const RenderOptions& options) {
   if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
   return overrides;
 }
+
+namespace {
 
 /// The part of the picture that --pixelbounds asks for; absent: all.
 std::optional<std::array<int, 4>> window_of(const RenderOptions& options, const RenderSettings& render) {
@@ -74,7 +77,7 @@ api::Scene checked_scene(const RenderOptions& options, const std::vector<std::st
     throw Error(ErrorKind::usage, std::string("--spp: the samples follow from ") +
                                       (options.seconds ? "--time" : "--error") + "; leave one of the two out");
   std::vector<std::string> overrides = chosen;
-  for (const std::string& own : all_overrides_of(options))
+  for (const std::string& own : picture_overrides_of(options))
     overrides.push_back(own);
   api::Scene checked = api::Scene::from_file(options.input, overrides);
   checked.set_quality(options.quality, !options.spp);

@@ -1,6 +1,10 @@
 #include "host/cl/device.h"
 #include "host/cl/device_choice.h"
+#include "host/error.h"
 #include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
 
 namespace pointgi {
 
@@ -11,6 +15,20 @@ std::string trimmed(std::string text) {
   text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
   const auto first = text.find_first_not_of(' ');
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// As if the device had no more than POINTGI_DEVICE_MEMORY says.
+void limit_memory(DeviceInfo& info) {
+  const char* text = std::getenv("POINTGI_DEVICE_MEMORY");
+  if (text == nullptr || *text == '\0') return;
+  std::uint64_t mebibytes = 0;
+  const char* end = text + std::strlen(text);
+  const auto [stopped, error] = std::from_chars(text, end, mebibytes);
+  if (error != std::errc() || stopped != end || mebibytes == 0 || mebibytes > (1u << 30))
+    throw Error(ErrorKind::usage, "POINTGI_DEVICE_MEMORY=" + std::string(text) +
+                                      ": expected a number of MiB, for example 4096; correct it, or unset it");
+  info.memory_bytes = std::min(info.memory_bytes, mebibytes << 20);
+  info.max_allocation_bytes = std::min(info.max_allocation_bytes, info.memory_bytes);
 }
 
 DeviceInfo describe(const cl::Device& device, const cl::Platform& platform) {
@@ -34,6 +52,7 @@ DeviceInfo describe(const cl::Device& device, const cl::Platform& platform) {
     info.image2d_width = device.getInfo<CL_DEVICE_IMAGE2D_MAX_WIDTH>();
     info.image2d_height = device.getInfo<CL_DEVICE_IMAGE2D_MAX_HEIGHT>();
   }
+  limit_memory(info);
   return info;
 }
 

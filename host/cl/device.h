@@ -31,7 +31,8 @@ struct Device {
   DeviceInfo info;
 };
 
-/// All devices of all platforms, in the platforms' order; empty when there is none.
+/// All devices of all platforms, in the platforms' order; empty when there is none. Their memory is at most
+/// POINTGI_DEVICE_MEMORY, MiB, where that variable is set. Throws Error(usage) where it is no such number.
 std::vector<Device> list_devices();
 
 /// By `selector`: an index of list_devices(), "cpu", "gpu", or a part of a name (case does not matter); empty: the

@@ -101,6 +101,8 @@ cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
                                                " at most in one piece; use a smaller cloud, or another --device");
   try {
     ask_faults({DeviceCall::Kind::allocation, {}, size, 0});
+    // Drivers that share their memory with the host promise more than there is.
+    if (bytes_->now + size > info_.memory_bytes) throw cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE);
     cl::Buffer buffer(context_, flags, size);
     account(buffer, size);
     return buffer;

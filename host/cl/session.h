@@ -138,6 +138,7 @@ public:
   std::size_t programs_from_cache() const { return from_cache_; }
   /// Given as source to a driver that keeps compiled kernels itself; whether it compiled them again only it knows.
   std::size_t programs_kept_by_driver() const { return kept_by_driver_; }
+  std::uint64_t held_bytes() const { return bytes_->now; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
   std::uint64_t bytes_held() const { return bytes_->now; }
   /// From now on peak_bytes() is of what is there now and comes later.

@@ -81,14 +81,17 @@ LinkOptions link_options(const ExchangeScene& scene, const RadiositySettings& se
   options.samples = static_cast<unsigned>(settings.vmap_samples);
   options.point_samples = static_cast<unsigned>(settings.point_samples);
   options.epsilon = static_cast<float>(settings.epsilon);
-  options.most_rays =
-      settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays) : default_vmap_rays(points, settings);
+  options.most_rays = most_vmap_rays(settings, points);
   options.seed = scene.seed;
   options.thesis = settings.vmap == "thesis";
   return options;
 }
 
 } // namespace
+
+std::uint64_t most_vmap_rays(const RadiositySettings& settings, std::size_t points) {
+  return settings.vmap_rays ? static_cast<std::uint64_t>(*settings.vmap_rays) : default_vmap_rays(points, settings);
+}
 
 RadiosityMap cluster_points(Session& session, const ExchangeScene& scene, const RadiositySettings& settings) {
   RadiosityMap map;

@@ -38,6 +38,9 @@ struct RadiosityMap {
 /// Error(memory).
 RadiosityMap cluster_points(Session& session, const ExchangeScene& scene, const RadiositySettings& settings);
 
+/// Rays after which find_visibility no longer divides what is far apart; 0: no bound. `points`: that exchange light.
+std::uint64_t most_vmap_rays(const RadiositySettings& settings, std::size_t points);
+
 /// What find_visibility would ask, from a sample of its questions; nothing where no splat exchanges light. Throws
 /// Error(device), Error(memory).
 LinkEstimate estimate_visibility(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,

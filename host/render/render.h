@@ -15,6 +15,9 @@ struct ObjectRays {
   std::uint64_t on_splats = 0, on_backs = 0;
 };
 
+/// Rows of a band: enough for the EXR's blocks of 16, few enough that a picture 65536 wide stays small in memory.
+constexpr int band_rows = 16;
+
 /// What the device made of the window.
 struct RenderTotals {
   std::uint64_t eye_rays = 0;

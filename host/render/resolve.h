@@ -15,7 +15,4 @@ Band empty_band(const RenderRequest& request, int first_row, int rows);
 /// Whether some pixel of R, G and B is above 0.
 bool is_lit(const Band& band);
 
-/// Rows of a band: enough for the EXR's blocks of 16, few enough that a picture 65536 wide stays small in memory.
-inline constexpr int band_rows = 16;
-
 } // namespace pointgi

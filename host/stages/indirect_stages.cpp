@@ -1,9 +1,9 @@
 #include "host/stages/indirect_stages.h"
 #include "host/cloud/normal_field.h"
 #include "host/error.h"
-#include "host/radiosity/plan.h"
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
+#include "host/stages/require_memory.h"
 #include <algorithm>
 #include <stdexcept>
 
@@ -16,18 +16,6 @@ namespace {
 constexpr int indirect_light_samples = 16;
 /// Of light that enters besides, however little.
 constexpr double coarsest_tolerance = 0.1;
-
-unsigned samples_for(const IndirectRequest& request, bool with_emitters) {
-  const DeviceLighting& lighting = request.lighting;
-  // Of few lights without a size nothing is chosen at random.
-  const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
-                    (lighting.light_types & SIZED_LIGHTS) == 0 && lighting.light_sources.size() <= ALL_LIGHT_SOURCES;
-  if (sure) return 1;
-  const Scene& scene = request.scene;
-  // Light that the picture shows at the points has the samples of a pixel.
-  const int default_samples = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
-  return static_cast<unsigned>(scene.radiosity.light_samples.value_or(default_samples));
-}
 
 /// Progress of a stage, and an end on request, both at every launch of the device.
 class StageWatch {
@@ -52,6 +40,18 @@ private:
 };
 
 } // namespace
+
+unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters) {
+  const DeviceLighting& lighting = request.lighting;
+  // Of few lights without a size nothing is chosen at random.
+  const bool sure = !(with_emitters && !lighting.emitters.empty()) && !lighting.has_environment &&
+                    (lighting.light_types & SIZED_LIGHTS) == 0 && lighting.light_sources.size() <= ALL_LIGHT_SOURCES;
+  if (sure) return 1;
+  const Scene& scene = request.scene;
+  // Light that the picture shows at the points has the samples of a pixel.
+  const int default_samples = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
+  return static_cast<unsigned>(scene.radiosity.light_samples.value_or(default_samples));
+}
 
 bool has_reflectors(const Scene& scene, View<Splat> points) {
   return std::any_of(points.begin(), points.end(), [&](const Splat& s) {
@@ -140,6 +140,10 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
   return field;
 }
 
+ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging) {
+  return {pools, request.variant, request.points, exchanging, request.frame.side, request.scene.render.seed};
+}
+
 std::string reason_against_radiosity(const IndirectRequest& request) {
   if (request.by_paths) return "the path tracer makes the picture";
   if (request.scene.radiosity.method == "none") return "radiosity.method = \"none\": direct light only";
@@ -156,6 +160,7 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
   StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
   if (!clusters) clusters = cluster_points(session, exchange, settings);
+  require_fmm_memory(session, clusters->tree, settings, expected.value_or(LinkEstimate{}));
   RadiosityMap map = find_visibility(session, exchange, settings, std::move(*clusters), expected, watch.report());
   if (map.kept) log_info("V-map: kept from an earlier run");
   stages.finish(map.vmap.links.size(), "links");
@@ -165,18 +170,14 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
 std::vector<float> direct_light(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                 bool with_emitters) {
   const std::size_t points = request.points.size;
-  return session.download(direct_irradiance_of_points(session, pools, request.variant, request.lighting,
-                                                      request.frame.side, points, samples_for(request, with_emitters),
-                                                      with_emitters, [] { return false; }),
-                          3 * points);
-}
-
-ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging) {
-  return {pools, request.variant, request.points, exchanging, request.frame.side, request.scene.render.seed};
+  return session.download(
+      direct_irradiance_of_points(session, pools, request.variant, request.lighting, request.frame.side, points,
+                                  direct_light_samples(request, with_emitters), with_emitters, [] { return false; }),
+      3 * points);
 }
 
 /// Whether direct light has to be passed on by surfaces at all: not where the light between them cannot matter.
-bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, const IndirectLight& light) {
+bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, View<float> direct) {
   const double least = request.scene.radiosity.least_share;
   // What mirrors throw, and what shines among the points, is not in the bound.
   if (least == 0.0 || request.lighting.has_specular() || direct_light_by_radiosity(request.scene)) return true;
@@ -186,33 +187,37 @@ bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, co
     for (std::size_t c = 0; c < 3; ++c) {
       const double rho = clusters.tree.points[k].colour[c];
       albedo = std::max(albedo, rho);
-      reflected.push_back(rho * light.direct[3 * clusters.place[k] + c]);
+      reflected.push_back(rho * direct[3 * clusters.place[k] + c]);
       brightest = std::max(brightest, reflected.back());
     }
   if (!(brightest > 0.0)) return true; // who solves for no light says what is wrong
   return bound_of_exchange(clusters.tree, reflected, albedo, least) > least;
 }
 
-/// The stage `plan`: which method suits the scene. `clusters` are those of the points that exchange light.
-MethodPlan run_plan(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
-                    std::optional<RadiosityMap>& clusters, IndirectLight& light, StageLog& stages) {
+} // namespace
+
+ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
+                           StageLog& stages) {
   stages.start("plan");
   StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
-  light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
-  clusters = cluster_points(session, exchange, settings);
-  MethodPlan plan{nullptr, {}, {}};
-  if (!may_matter(request, *clusters, light))
-    plan.reason = fmt::format("surfaces send each other less than {:g} of the light, radiosity.least_share",
-                              settings.least_share);
+  ExchangePlan plan{{nullptr, {}, {}}, {}, direct_light(session, exchange.pools, request, !emitters_exchange)};
+  plan.clusters = cluster_points(session, exchange, settings);
+  if (!may_matter(request, plan.clusters, plan.direct))
+    plan.choice.reason = fmt::format("surfaces send each other less than {:g} of the light, radiosity.least_share",
+                                     settings.least_share);
   else
-    plan = plan_method(session, exchange, settings, *clusters, emitters_exchange && !request.lighting.emitters.empty());
+    plan.choice = plan_method(session, exchange, settings, plan.clusters,
+                              emitters_exchange && !request.lighting.emitters.empty());
   stages.finish(request.points.size, "points");
-  log_info("radiosity: {}: {}", plan.method != nullptr ? fmt::format("method \"{}\"", plan.method->name) : "not solved",
-           plan.reason);
+  log_info("radiosity: {}: {}",
+           plan.choice.method != nullptr ? fmt::format("method \"{}\"", plan.choice.method->name) : "not solved",
+           plan.choice.reason);
   return plan;
 }
+
+namespace {
 
 /// What enters first: lights, what shines, and photons by way of specular surfaces.
 RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, const ExchangeScene& exchange,
@@ -304,12 +309,14 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   std::optional<LinkEstimate> expected;
   std::string without_vmap;
   if (settings.method == "auto") {
-    const MethodPlan plan = run_plan(session, exchange, request, clusters, light, stages);
-    light.method = plan.method;
-    expected = plan.vmap;
-    without_vmap = plan.reason;
-    if (plan.method == nullptr) {
-      skip(plan.reason);
+    ExchangePlan plan = plan_exchange(session, exchange, request, stages);
+    light.method = plan.choice.method;
+    light.direct = std::move(plan.direct);
+    clusters = std::move(plan.clusters);
+    expected = plan.choice.vmap;
+    without_vmap = plan.choice.reason;
+    if (light.method == nullptr) {
+      skip(without_vmap);
       return light;
     }
   } else if (light.method->without_vmap != nullptr)

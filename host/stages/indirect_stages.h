@@ -1,6 +1,6 @@
 #pragma once
 /// The stages of indirect light, between the octree and the picture: which the scene needs, and what they found.
-#include "host/radiosity/method.h"
+#include "host/radiosity/plan.h"
 #include "host/scene/frame.h"
 #include "host/stages/stages.h"
 #include <functional>
@@ -35,6 +35,23 @@ struct IndirectRequest {
   /// Called after each pass of a method that has passes, with the light so far; may be empty.
   std::function<void(unsigned pass, const IndirectLight& so_far)> after_pass{};
 };
+
+/// What light is exchanged in. `exchanging`: exchanging_materials(); must live as long, as must the others.
+ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging);
+
+/// What the stage `plan` finds: the method, and on the way to it what that method will need.
+struct ExchangePlan {
+  MethodPlan choice;
+  RadiosityMap clusters;     ///< of the points that exchange light
+  std::vector<float> direct; ///< IndirectLight::direct
+};
+
+/// The stage `plan`: which method suits a scene that leaves the method open. Throws as run_indirect_stages.
+ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, const IndirectRequest& request,
+                           StageLog& stages);
+
+/// Estimates of the direct light of each point that enters the exchange.
+unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters);
 
 /// Runs `plan` where the scene leaves the method open, `vmap`, and the stage of the method, which has the method's
 /// name, where the scene needs them, and says of each stage that does not run why. Throws Error(interrupted) when the

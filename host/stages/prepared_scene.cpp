@@ -1,6 +1,7 @@
 #include "host/stages/prepared_scene.h"
 #include "host/passes/build_pools.h"
 #include "host/run.h"
+#include "host/stages/require_memory.h"
 #include <algorithm>
 
 namespace pointgi {
@@ -53,6 +54,8 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.kinds = placed.kinds;
   ready.file_order = std::move(placed.file_order);
   ready.ids = ids_of(source_of(pools), placed.id);
+  require_pool_memory(session, {scene, points_of(pools), ready.ids, ready.first_ids, ready.frame.side}, ready.octree,
+                      ready.choice.variant);
   ready.on_device = upload(session, std::move(pools), ready.choice.variant, ready.points);
   stages.finish(ready.octree.nodes, "nodes");
   ready.lighting = device_lighting(scene, ready.frame, ready.points, clips);

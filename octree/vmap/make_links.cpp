@@ -6,6 +6,7 @@
 #include "octree/vmap/point_shares.h"
 #include "octree/vmap/shafts.h"
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -13,6 +14,12 @@
 namespace pointgi {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// Pairs that a thread takes at a time.
 constexpr std::size_t grain = 256;
@@ -85,8 +92,12 @@ public:
     sampled_ = pairs_a_wave;
     run();
     const double wanted = static_cast<double>(options_.point_samples) * static_cast<double>(tree_.points.size());
-    if (options_.point_samples > 0 && !options_.thesis)
-      estimate_.rays += near_pairs_ + asks_alone_ / std::clamp(std::ceil(asks_alone_ / wanted), 1.0, 4.0);
+    if (options_.point_samples > 0 && !options_.thesis) {
+      const double shared = near_pairs_ + asks_alone_ / std::clamp(std::ceil(asks_alone_ / wanted), 1.0, 4.0);
+      estimate_.rays += shared;
+      if (map_.statistics.rays > 0)
+        estimate_.seconds += shared * oracle_seconds_ / static_cast<double>(map_.statistics.rays);
+    }
     return estimate_;
   }
 
@@ -100,8 +111,10 @@ public:
       map_.statistics.coarse_waves += coarse_ ? 1 : 0;
       const std::uint64_t rays = map_.statistics.rays;
       std::vector<Pair> next;
+      const Clock::time_point began = Clock::now();
       for (std::size_t begin = 0; begin < wave.size(); begin += pairs_at_once)
         treat({wave.data() + begin, std::min(pairs_at_once, wave.size() - begin)}, next);
+      estimate_.seconds += weight_ * seconds_since(began);
       rays_a_pair_ = static_cast<double>(map_.statistics.rays - rays) / static_cast<double>(wave.size());
       wave = std::move(next);
       if (sampled_ > 0 && wave.size() > sampled_) thin(wave);
@@ -168,7 +181,9 @@ private:
       first[r + 1] = first[r] + asked[r].size();
     asked = {};
     std::vector<std::uint8_t> blocked;
+    const Clock::time_point asking = Clock::now();
     if (!segments.empty()) blocked = oracle_.blocked(segments);
+    oracle_seconds_ += seconds_since(asking);
     if (blocked.size() != segments.size()) throw std::logic_error("vmap: the oracle left segments unanswered");
 
     std::vector<Output> outputs(ranges);
@@ -330,6 +345,7 @@ private:
   std::size_t sampled_ = 0; ///< pairs of a wave, at most; 0: all
   double weight_ = 1.0;     ///< pairs that each of the wave stands for
   LinkEstimate estimate_;
+  double oracle_seconds_ = 0.0;
   double asks_alone_ = 0.0, near_pairs_ = 0.0; ///< segments of point_shares: a point each, a pair of points each
   VMap map_;
 };

@@ -63,13 +63,15 @@ VMap make_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOpt
 struct LinkEstimate {
   double pairs = 0.0; ///< of clusters, that would be tested
   double links = 0.0;
-  double rays = 0.0;  ///< those of point_shares among them
-  double bytes = 0.0; ///< of links and shares
+  double rays = 0.0;    ///< those of point_shares among them
+  double bytes = 0.0;   ///< of links and shares
+  double seconds = 0.0; ///< as long as the sample's questions took by the clock: not deterministic
 };
 
 /// The same traversal of a sample: of each wave at most `pairs_a_wave` pairs are asked, drawn evenly, each of which
 /// then stands for several. Unbiased but for the shares of near leaves, half of whose pairs of points are taken to face
-/// each other. options.most_rays has no effect: what would be asked without it is told. Deterministic, as make_links.
+/// each other. options.most_rays has no effect: what would be asked without it is told. Deterministic, as make_links,
+/// but for the seconds.
 LinkEstimate estimate_links(const ClusterTree& tree, VisibilityOracle& oracle, const LinkOptions& options,
                             View<Splat> obstacles = {}, std::size_t pairs_a_wave = 4000);
 
