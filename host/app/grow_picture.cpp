@@ -79,15 +79,12 @@ public:
 
   GrownPicture run() {
     context_.stages.start("render");
+    film_->load_kernels();
     double noise = std::numeric_limits<double>::infinity();
     for (int now = 0; !stop_asked();) {
       const int next = next_samples(goal_, now, left(), noise);
-      if (next <= now) break;
-      // Of less than a pass nothing is kept: its samples lie otherwise in the pixel than those of a whole one.
-      if (now % pass != 0) film_ = std::make_unique<GrowingFilm>(job_.growing());
-      grow(now % pass != 0 ? 0 : now, next);
-      now = static_cast<int>(film_->samples());
-      if (now < next) break; // interrupted, or the time is over
+      if (next <= now || !grow(now, next)) break; // enough, interrupted, or the time is over
+      now = next;
       if (goal_.error) noise = relative_noise(*film_);
       if (worth_writing(next)) write();
     }
@@ -101,12 +98,21 @@ private:
     return goal_.until ? *goal_.until - now_seconds() - output_.seconds_to_write() : std::numeric_limits<double>::max();
   }
 
-  void grow(int from, int to) {
+  /// False where it was stopped. Of less than a pass nothing is kept: its samples lie otherwise in the pixel than those
+  /// of a whole one.
+  bool grow(int from, int to) {
+    const bool anew = from % pass != 0;
+    std::unique_ptr<GrowingFilm> film = anew ? std::make_unique<GrowingFilm>(job_.growing()) : std::move(film_);
+    // The first picture is finished whatever it takes: without it there would be none with all of the light.
+    const auto stop = [&] { return stop_asked() || (from > 0 && left() < 0.0); };
+    const int before = anew ? 0 : from;
     const double begun = now_seconds();
-    film_->grow(
-        static_cast<pg_uint>(to), [&](double share) { report_progress(overall(from + share * (to - from))); },
-        [&] { return stop_asked() || (from > 0 && left() < 0.0); });
-    if (static_cast<int>(film_->samples()) == to) goal_.seconds_a_sample = (now_seconds() - begun) / (to - from);
+    film->grow(static_cast<pg_uint>(to),
+               [&](double share) { report_progress(overall(before + share * (to - before))); }, stop);
+    const bool whole = static_cast<int>(film->samples()) == to;
+    if (whole) goal_.seconds_a_sample = (now_seconds() - begun) / (to - before);
+    if (whole || !anew) film_ = std::move(film);
+    return whole;
   }
 
   /// Share of the whole, as far as it is known.

@@ -80,6 +80,7 @@ PreviewCost write_preview(const api::Context& context, const api::Prepared& prep
     few.spp = samples;
     api::FilmJob job(*light.parts(), few);
     GrowingFilm growing = job.growing();
+    growing.load_kernels();
     const double begun = stages.seconds();
     growing.grow(
         samples, [](double) {}, stop_asked);

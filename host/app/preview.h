@@ -6,7 +6,7 @@ namespace pointgi {
 
 /// What it cost, for what comes after it.
 struct PreviewCost {
-  double seconds_a_sample = 0.0; ///< of all pixels; its kernels may have been built in it
+  double seconds_a_sample = 0.0; ///< of all pixels
 };
 
 /// Direct light, and light between surfaces by as few directions as fit into `seconds`; no caustics, next to no

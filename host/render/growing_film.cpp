@@ -1,6 +1,7 @@
 #include "host/render/growing_film.h"
 #include "host/render/resolve.h"
 #include <algorithm>
+#include <utility>
 
 namespace pointgi {
 
@@ -41,6 +42,14 @@ void GrowingFilm::grow(pg_uint samples, const std::function<void(double)>& progr
     bands_[b] = std::move(sums);
     samples_[b] = samples;
   }
+}
+
+void GrowingFilm::load_kernels() {
+  RenderTotals ignored;
+  bool launched = false;
+  const TileFilms films{{}, [](int, int, const std::vector<float>&) {}};
+  passes_.run({0, std::min(band_rows, height_), 0, GRID_RAYS}, films, ignored, [](double) {},
+              [&] { return std::exchange(launched, true); });
 }
 
 pg_uint GrowingFilm::samples() const {

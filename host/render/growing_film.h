@@ -15,6 +15,9 @@ public:
   /// samples than the others. `progress`: share of what is added, 0..1.
   void grow(pg_uint samples, const std::function<void(double)>& progress, const std::function<bool()>& stop);
 
+  /// Launches the kernels once, so that drivers load them before a time counts. Changes nothing else.
+  void load_kernels();
+
   /// Of the rows that have the fewest; may be 0.
   pg_uint samples() const;
 
