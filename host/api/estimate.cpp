@@ -175,6 +175,7 @@ private:
     estimate_.exchange_rays = found.rays;
     estimate_.applies = found.applies;
     exchanges_ = true;
+    direct_ = std::move(plan.direct);
     // What pixels read of it: any light does, for the time that it takes.
     light_.irradiance = session_.upload(std::vector<cl_float4>(pool_));
     light_.light.indirect.at_pixels = std::move(found.at_pixels);
@@ -192,6 +193,14 @@ private:
     return seconds_since(begin);
   }
 
+  /// As many as this share of all, by direct light alone; its seconds.
+  double fly_from_surfaces(double share, Caustics& caustics) {
+    const Clock::time_point begin = Clock::now();
+    add_indirect_photons(session_, prepared_.ready.on_device, request_, *light_.light.normal_field,
+                         reflected_radiosity(request_, {direct_}), share, 1, caustics, stages_);
+    return seconds_since(begin);
+  }
+
   void estimate_photons() {
     const Clock::time_point begin = Clock::now();
     light_.light.normal_field =
@@ -202,29 +211,33 @@ private:
     else
       add("normals", "a surface is specular", seconds_since(begin), sizeof(cl_float4) * pool_);
     held_ = std::max(held_, session_.held_bytes());
-    const long long all = request_.scene.caustics.photons;
+    const long long all = request_.scene.caustics.photons, few = std::min(all, std::max(few_photons, all / 10));
     Caustics first, some;
     fly(std::min(all, first_photons), first); // builds its kernels
     if (const StageRecord record = stages_.records().back(); !record.ran) return skip("photon", record.reason);
     upload_caustics(session_, first, request_, stages_);
-    const double few_seconds = fly(std::min(all, few_photons), some), flying = some.ledger->device_seconds;
-    const double more = static_cast<double>(all) / static_cast<double>(std::min(all, few_photons));
+    const double few_seconds = fly(few, some), flying = some.ledger->device_seconds;
+    const double more = static_cast<double>(all) / static_cast<double>(few);
+    double seconds = few_seconds - flying + more * flying;
     const bool from_surfaces = request_.scene.caustics.indirect && exchanges_;
-    const double flights = from_surfaces ? request_.scene.caustics.feedback ? 2.0 + more_rounds : 2.0 : 1.0;
-    // Each looks for its leaves; what later rounds send is little.
-    double seconds = flights * (few_seconds - flying) + std::min(flights, 2.0) * more * flying;
+    if (from_surfaces) {
+      fly_from_surfaces(1e-3, first);
+      const double again = fly_from_surfaces(1.0 / more, some), flying_again = some.ledger->device_seconds - flying;
+      // Later rounds send little, but look at all points as the first does.
+      const double flights = request_.scene.caustics.feedback ? 1.0 + more_rounds : 1.0;
+      seconds += flights * (again - flying_again) + more * flying_again;
+    }
     Clock::time_point then = Clock::now();
     build_photon_map(some.photons);
     seconds += (more - 1.0) * seconds_since(then);
     then = Clock::now();
     light_.light.photons = upload_caustics(session_, some, request_, stages_);
     seconds += seconds_since(then);
-    const auto stored =
-        static_cast<std::uint64_t>(more * static_cast<double>(some.photons.size())) * (from_surfaces ? 2 : 1);
-    const double items =
-        more * static_cast<double>(some.ledger->aimed) + (from_surfaces ? static_cast<double>(all) : 0.0);
+    const auto stored = static_cast<std::uint64_t>(more * static_cast<double>(some.photons.size()));
+    const double items = more * static_cast<double>(some.ledger->aimed);
     // Launches are as long as those of so few would have grown to be.
-    const double a_launch = launch_seconds * static_cast<double>(some.ledger->aimed) / std::max(1e-9, flying);
+    const double a_launch =
+        launch_seconds * static_cast<double>(some.ledger->aimed) / std::max(1e-9, some.ledger->device_seconds);
     const auto flights_bytes =
         static_cast<std::uint64_t>(std::min({a_launch, 262144.0, 0.5 * items}) * sizeof(PhotonFlight));
     const std::uint64_t map = photon_map_bytes(std::min<std::uint64_t>(stored, most_stored_photons), pool_);
@@ -292,6 +305,7 @@ private:
   std::size_t pool_;
   std::uint64_t held_; ///< by the device, as the stages will have it
   bool exchanges_ = false;
+  std::vector<float> direct_; ///< IndirectLight::direct, where light is exchanged
   PictureEstimate estimate_;
 };
 
