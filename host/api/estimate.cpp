@@ -52,21 +52,6 @@ constexpr double seconds_of_channel = 6e-8, seconds_of_png_pixel = 4e-7;
 /// as long as the first one.
 constexpr double more_rounds = 2.0, rounds_solved = 1.0;
 
-/// While one lives, the context's log of stages is another one.
-class OtherLog {
-public:
-  explicit OtherLog(StageLog& log) : log_(log) { std::swap(log_, other_); }
-  ~OtherLog() { std::swap(log_, other_); }
-  OtherLog(const OtherLog&) = delete;
-  OtherLog& operator=(const OtherLog&) = delete;
-
-  const StageLog& before() const { return other_; }
-
-private:
-  StageLog& log_;
-  StageLog other_;
-};
-
 class Estimator {
 public:
   Estimator(const Prepared& prepared, const FilmOptions& film)
@@ -298,7 +283,7 @@ private:
   Prepared::Parts& prepared_;
   Session& session_;
   StageLog& stages_; ///< of the estimate
-  OtherLog other_log_;
+  StagesApart other_log_;
   Light::Parts light_; ///< by which small pictures are made
   IndirectRequest request_;
   const FilmOptions& film_;

@@ -58,6 +58,16 @@ std::string name_of_pass(const std::string& file, unsigned pass) {
 
 } // namespace
 
+void require_memory(const Prepared& prepared, const LightOptions& options) {
+  Light::Parts light;
+  light.prepared = prepared.parts();
+  light.options = options;
+  const Prepared::Parts& from = *prepared.parts();
+  const PreparedScene& ready = from.ready;
+  require_light_memory(from.context->session, light.request(),
+                       {from.scene, ready.points, ready.ids, ready.first_ids, ready.frame.side}, options.photons);
+}
+
 Light::Light(const Prepared& prepared, const LightOptions& options, const RunControl& run) : parts_(new Parts) {
   const RunScope scope(run);
   parts_->prepared = prepared.parts();
@@ -66,9 +76,7 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
   if (!options.path_tracing) require_possible_radiosity(from.scene);
   Session& session = from.context->session;
   StageLog& stages = from.context->stages;
-  const PreparedScene& ready = from.ready;
-  require_light_memory(session, parts_->request(),
-                       {from.scene, ready.points, ready.ids, ready.first_ids, ready.frame.side}, options.photons);
+  require_memory(prepared, options);
   IndirectLight& indirect = parts_->light.indirect;
   if (options.photons || options.path_tracing) {
     parts_->light = run_light_stages(session, from.ready.on_device, parts_->request(), stages);

@@ -49,6 +49,9 @@ struct Light::Parts {
   const std::vector<float>& sky_of_points();
 };
 
+/// What Light throws at once for want of memory: before other work is done. Throws Error(memory).
+void require_memory(const Prepared& prepared, const LightOptions& options);
+
 /// A film before its rows: what is rendered, and how the file describes it. Throws as Film does.
 class FilmJob {
 public:

@@ -1,4 +1,5 @@
 #include "host/app/choose_setting.h"
+#include "host/app/light_command.h"
 #include "host/app/progress.h"
 #include "host/measure/forecast.h"
 #include "host/measure/measure.h"
@@ -14,16 +15,6 @@ namespace pointgi {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string key_of(const std::string& override_text) {
-  return override_text.substr(0, override_text.find('='));
-}
-
-bool touches(const LightChoice& light, const std::vector<std::string>& own) {
-  return std::any_of(light.overrides.begin(), light.overrides.end(), [&](const std::string& text) {
-    return std::any_of(own.begin(), own.end(), [&](const std::string& other) { return key_of(other) == key_of(text); });
-  });
-}
 
 /// The picture's first version and the files take this share of --time.
 constexpr double share_of_rest = 0.12;
@@ -51,34 +42,57 @@ ChosenSetting chosen_of(const PictureChoice& choice, double pixels, double facto
   return chosen;
 }
 
+/// Whether the scene's files are as they were.
+bool is_of_state(const Trade& trade, const std::string& scene) {
+  MeasureOptions measured;
+  measured.scene = scene;
+  measured.overrides = trade.overrides;
+  measured.reference_file = trade.reference.file;
+  try {
+    return state_of(measured) == trade.state;
+  } catch (const Error&) { // what the overrides name is no longer there
+    return false;
+  }
+}
+
+/// Whether the command asks for other settings of the scene than the measurement had; those of [render] do not count.
+bool settings_besides(const RenderOptions& options, const Trade& trade) {
+  const auto of_light = [](std::vector<std::string> all) {
+    all.erase(std::remove_if(all.begin(), all.end(), [](const auto& text) { return text.rfind("render.", 0) == 0; }),
+              all.end());
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  return of_light(overrides_of(options)) != of_light(trade.overrides);
+}
+
 } // namespace
 
 std::optional<Trade> trade_for(const RenderOptions& options, const std::string& device) {
+  const bool from_elsewhere = !options.trade.empty();
   std::optional<Trade> trade;
-  if (!options.trade.empty()) {
+  if (from_elsewhere) {
     std::error_code ignored;
     trade = read_trade(fs::is_directory(options.trade, ignored) ? (fs::path(options.trade) / trade_json_name).string()
                                                                 : options.trade);
+    if (trade->device != device)
+      spdlog::warn("{}: was measured on {}; the seconds may be others here", options.trade, trade->device);
   } else {
     trade = stored_trade(options.input, device);
   }
   if (!trade) return std::nullopt;
-  MeasureOptions measured;
-  measured.scene = options.input;
-  measured.overrides = trade->overrides;
-  if (state_of(measured) == trade->state) return trade;
-  if (options.seconds || options.error)
-    spdlog::warn("{} has changed since it was measured; `pointgi measure {}` tells anew", options.input, options.input);
-  return options.trade.empty() ? std::nullopt : trade;
+  const std::string unfit = !is_of_state(*trade, options.input) ? "has changed since it was measured"
+                            : settings_besides(options, *trade) ? "was measured with other settings than --set asks for"
+                                                                : "";
+  if (unfit.empty()) return trade;
+  if (options.seconds || options.error || from_elsewhere)
+    spdlog::warn("{} {}; `pointgi measure` would tell anew", options.input, unfit);
+  return std::nullopt;
 }
 
-std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOptions& options,
-                                             const std::vector<std::string>& own_overrides, double pixels,
+std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOptions& options, double pixels,
                                              double begun) {
-  std::vector<LightChoice> lights = light_choices(trade);
-  lights.erase(std::remove_if(lights.begin(), lights.end(),
-                              [&](const LightChoice& light) { return touches(light, own_overrides); }),
-               lights.end());
+  const std::vector<LightChoice> lights = light_choices(trade);
   if (lights.empty()) return std::nullopt;
   const double for_picture =
       options.seconds ? (1.0 - share_of_rest) * *options.seconds - begun - trade.prepare_seconds : 0.0;
@@ -97,7 +111,7 @@ std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOpt
     choice = choose_for_time(lights, pixels, for_picture);
     if (!choice) doubt = "; no measured setting is so fast";
   }
-  if (!choice) { // the most accurate where a time does not matter, else the fastest
+  if (!choice) { // the most accurate where a time does not matter, else the fastest; noise as of next_samples()
     const auto least = [&](const auto& by) {
       return *std::min_element(lights.begin(), lights.end(),
                                [&](const LightChoice& a, const LightChoice& b) { return by(a) < by(b); });
@@ -106,7 +120,7 @@ std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOpt
                                               : least([](const LightChoice& l) { return l.light_error.high; });
     const double allowed = options.error ? std::max(0.25 * *options.error, 1e-9) : 1.0;
     const int samples =
-        options.seconds ? 1 : static_cast<int>(std::clamp(light.noise_a_sample / allowed, 32.0, 4096.0));
+        options.seconds ? 1 : static_cast<int>(std::clamp(light.noise_a_sample / allowed, 1.0, 65536.0));
     choice = PictureChoice{light, samples, seconds_of(light, pixels, samples), error_of(light, samples)};
   }
   ChosenSetting chosen = chosen_of(*choice, pixels, noise_factor(trade), options);
@@ -129,6 +143,8 @@ PresetChoice choose_by_presets(const std::string& kind, const RenderOptions& opt
                                double begun) {
   // Of --time, as much for the light: more samples are wanted, too.
   constexpr double share_of_light = 0.4;
+  // Of a preset's error: variances tell too much noise, as they know nothing of strata.
+  constexpr double least_light = 0.25;
   const auto time_of = [&](const Preset& preset) { return light_seconds * preset.directions; };
   const double for_light = options.seconds ? share_of_light * (*options.seconds - begun) : 0.0;
   const Preset* chosen = nullptr;
@@ -146,10 +162,15 @@ PresetChoice choose_by_presets(const std::string& kind, const RenderOptions& opt
   goal.error = options.error;
   for (const PresetMeasurement& m : preset_measurements())
     if (m.preset == chosen->name && m.kind == kind)
-      goal.light_error = std::max(goal.light_error, m.error - m.noise / std::max(1, m.samples));
-  choice.setting.told = fmt::format("--quality {} is chosen, as scenes of its kind ({}) need; `pointgi measure {}` would tell "
-                                    "what this one does",
-                                    chosen->name, kind, options.input);
+      goal.light_error =
+          std::max({goal.light_error, m.error - m.noise / std::max(1, m.samples), least_light * m.error});
+  goal.light_error_known = errors_of_kind(chosen->name, kind).has_value();
+  choice.setting.told = fmt::format("the settings of --quality {} are chosen, {}; `pointgi measure {}` would tell what "
+                                    "this scene needs",
+                                    chosen->name,
+                                    goal.light_error_known ? "by what scenes of its kind (" + kind + ") needed"
+                                                           : std::string("as no scene of its kind was measured"),
+                                    options.input);
   return choice;
 }
 

@@ -13,18 +13,18 @@ struct ChosenSetting {
   std::string told;                  ///< what it is, and why, in a sentence
 };
 
-/// What was measured of the scene: --trade's, else what is kept of it on this device, unless its files have changed
-/// since, which the log hears. Throws Error(input) for a --trade that cannot be read.
+/// What was measured of the scene: --trade's, else what is kept of it on this device; absent, which the log hears,
+/// where its files have changed since or the command's settings are others, but for those of [render]. Throws
+/// Error(input) for a --trade that cannot be read.
 std::optional<Trade> trade_for(const RenderOptions& options, const std::string& device);
 
-/// By the trade, for `pixels` pixels; `begun`: seconds that the command has taken already. Settings that ask for a key
-/// that `own_overrides` have are none to choose from. Absent: the trade has none.
-std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOptions& options,
-                                             const std::vector<std::string>& own_overrides, double pixels,
+/// By the trade, for `pixels` pixels; `begun`: seconds that the command has taken already. Absent: the trade has no
+/// settings.
+std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOptions& options, double pixels,
                                              double begun);
 
-/// Where the scene was not measured: by the presets, and what they reached on scenes of its kind. `light_seconds`: of the
-/// light by the scene's own settings, as far as they are known.
+/// Where the scene was not measured: by the presets, and what they reached on scenes of its kind. `light_seconds`: of
+/// the light by the scene's own settings, as far as they are known.
 struct PresetChoice {
   std::string preset;
   ChosenSetting setting;

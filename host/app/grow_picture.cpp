@@ -22,8 +22,9 @@ int whole_passes(double samples) {
 }
 
 double needed_samples(const PictureGoal& goal, int now, double noise) {
-  const double allowed = *goal.error - goal.light_error;
-  if (!(allowed > 0.0)) return most_samples; // as good as there is time for
+  // Where the light alone has more error than that, noise need not be small beside what was asked for.
+  constexpr double share_of_noise = 0.25;
+  const double allowed = std::max(*goal.error - goal.light_error, share_of_noise * *goal.error);
   const double of_one = now == 0 ? goal.noise_a_sample : goal.noise_factor * noise * now;
   if (!std::isfinite(of_one)) return 2.0 * now;
   return std::ceil(of_one / allowed);
@@ -33,6 +34,8 @@ double needed_samples(const PictureGoal& goal, int now, double noise) {
 
 int next_samples(const PictureGoal& goal, int now, double left, double noise) {
   if (!goal.is_open()) return std::min(goal.samples, now == 0 ? pass : 2 * now);
+  if (goal.until && now == 0 && !(goal.seconds_a_sample > 0.0)) return 1; // shows the pace
+  const bool anew = now % pass != 0;                                      // what is less than a pass does not go on
   double wanted = most_samples;
   if (goal.error) {
     const double needed = needed_samples(goal, now, noise);
@@ -40,9 +43,10 @@ int next_samples(const PictureGoal& goal, int now, double left, double noise) {
     // A forecast of the noise may be off; what was measured is not.
     wanted = needed < pass ? std::max(1.0, needed) : pass * std::ceil(needed / pass);
   }
-  wanted = std::min(wanted, now == 0 ? std::max<double>(pass, 0.25 * wanted) : 2.0 * std::max(now, pass));
+  wanted = std::min<double>(wanted, std::max(2 * now, pass));
   if (!goal.until) return std::max(now, whole_passes(wanted));
-  const double affordable = now + (goal.seconds_a_sample > 0.0 ? std::max(0.0, left) / goal.seconds_a_sample : pass);
+  const double affordable = (anew ? 0 : now) + std::max(0.0, left) / goal.seconds_a_sample;
+  if (anew && affordable < 2.0 * now) return now; // little better, for all of the time that is left
   if (affordable >= wanted) return std::max(now, whole_passes(wanted));
   if (now == 0) return std::max(1, affordable < 2 * pass ? static_cast<int>(affordable) : whole_passes(affordable));
   return static_cast<int>(affordable); // the last pass
@@ -107,8 +111,9 @@ private:
     const auto stop = [&] { return stop_asked() || (from > 0 && left() < 0.0); };
     const int before = anew ? 0 : from;
     const double begun = now_seconds();
-    film->grow(static_cast<pg_uint>(to),
-               [&](double share) { report_progress(overall(before + share * (to - before))); }, stop);
+    film->grow(
+        static_cast<pg_uint>(to), [&](double share) { report_progress(overall(before + share * (to - before))); },
+        stop);
     const bool whole = static_cast<int>(film->samples()) == to;
     if (whole) goal_.seconds_a_sample = (now_seconds() - begun) / (to - before);
     if (whole || !anew) film_ = std::move(film);
@@ -131,6 +136,7 @@ private:
     job_.set_samples(static_cast<int>(film_->samples()));
     output_.write(job_, *film_, now_seconds());
     written_at_ = now_seconds();
+    written_samples_ = film_->samples();
   }
 
   std::uint64_t rays() const {
@@ -147,7 +153,7 @@ private:
     const RunControl to_the_end{}; // what is there is kept
     const RunScope scope(to_the_end);
     context_.stages.start("image");
-    write();
+    if (written_samples_ != film_->samples() || grown.totals.interrupted) write();
     const PixelWindow& w = job_.window();
     context_.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
     return grown;
@@ -159,6 +165,7 @@ private:
   PictureOutput& output_;
   std::unique_ptr<GrowingFilm> film_;
   double written_at_ = 0.0;
+  pg_uint written_samples_ = 0; ///< of the picture that was written last; a preview has none
 };
 
 } // namespace

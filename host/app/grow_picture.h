@@ -10,6 +10,7 @@ struct PictureGoal {
   std::optional<double> until;   ///< seconds of the stage log, with the writing of the files
   std::optional<double> error;   ///< relMSE
   double light_error = 0.0;      ///< relMSE that more samples leave
+  bool light_error_known = true; ///< else only the noise is told
   double noise_factor = 1.0;     ///< of the noise that the pixels' variances tell (host/measure/forecast.h)
   double seconds_a_sample = 0.0; ///< of all pixels, as far as it is known; 0: it is not
   double noise_a_sample = 0.0;   ///< relMSE of one sample a pixel, as far as it is known; 0: it is not

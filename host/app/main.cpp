@@ -129,12 +129,12 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
       .add_option("--time", render.seconds,
                   "seconds that the whole command may take: settings are chosen and samples added for the best picture "
                   "in them")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e9));
   command
       .add_option("--error", render.error,
                   "relMSE that is enough: the fastest settings that reach it, and samples until it is reached; best "
                   "after `pointgi measure` of the scene")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-9, 1e9));
   command.add_option("--trade", render.trade,
                      "what --time and --error choose by: the folder of `pointgi measure` (default: its last of this "
                      "scene here)");
@@ -170,8 +170,7 @@ void add_info_options(CLI::App& command, InfoOptions& info, Common& common) {
   command.add_option("FILE.ply|SCENE.toml", info.input, "what to look at")->required();
   command.add_option("--size", info.size, "image size, WIDTHxHEIGHT, of the picture whose cost is told");
   command.add_option("--spp", info.spp, "samples a pixel of it")->check(CLI::Range(1, 65536));
-  command.add_option("--quality", info.quality, "its quality, as for render")
-      ->check(CLI::IsMember({"draft", "normal", "high"}));
+  command.add_option("--quality", info.quality, "its quality, as for render")->check(CLI::IsMember(preset_names()));
   add_device_options(command, info.device, common);
   command.add_option("--set", info.overrides, "a value of the scene file, as for render; may repeat")
       ->take_all()

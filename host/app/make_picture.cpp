@@ -19,9 +19,11 @@ constexpr double share_of_preview = 0.04, usual_preview = 1.0;
 std::string told_of(const GrownPicture& grown, const PictureGoal& goal) {
   if (!goal.is_open()) return {};
   std::string text = fmt::format("{} samples a pixel", grown.samples);
-  if (std::isfinite(grown.noise))
-    text += fmt::format(", relMSE about {:.2g}, of which {:.2g} is noise",
-                        goal.light_error + goal.noise_factor * grown.noise, goal.noise_factor * grown.noise);
+  if (!std::isfinite(grown.noise)) return text;
+  const double noise = goal.noise_factor * grown.noise, all = goal.light_error + noise;
+  text += goal.light_error_known ? fmt::format(", relMSE about {:.2g}, of which {:.2g} is noise", all, noise)
+                                 : fmt::format(", relMSE of the noise about {:.2g}", noise);
+  if (goal.error && all > *goal.error) text += fmt::format("; {:.3g} was not reached", *goal.error);
   return text;
 }
 
@@ -51,18 +53,22 @@ MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& outp
   return made;
 }
 
-MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, PictureOutput& output) {
+MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
+                                      const std::function<PictureGoal(const PictureGoal&)>& choose,
+                                      PictureOutput& output) {
   MadePictureFiles made;
   const StageLog& stages = run.context.parts()->stages;
   const auto user_stops = [&] { return run.control.stop && run.control.stop(); };
   RunControl in_time = run.control;
   in_time.stop = [&] { return user_stops() || (goal.until && stages.seconds() > *goal.until); };
   try {
+    api::require_memory(run.prepared, {true, run.by_paths}); // or an older picture would be lost to a first one
     if (!run.by_paths) {
       const double seconds = goal.until ? share_of_preview * *goal.until : usual_preview;
       const PreviewCost cost = write_preview(run.context, run.prepared, run.film, seconds, output, run.control);
       if (goal.seconds_a_sample == 0.0) goal.seconds_a_sample = cost.seconds_a_sample;
     }
+    if (choose) goal = choose(goal);
     made.light = light_of(run, in_time);
     api::FilmJob job(*made.light->parts(), run.film);
     const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output);
@@ -76,6 +82,8 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, P
     }
     if (!output.written()) throw interruption();
   } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted && output.written())
+      spdlog::warn("{} is a first picture, with little of the light between surfaces", output.exr_path());
     if (error.kind() != ErrorKind::interrupted || !output.written()) throw;
   }
   made.light.reset();

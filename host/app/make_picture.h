@@ -24,8 +24,11 @@ struct MadePictureFiles {
 /// leaves older files alone, and as Light, FilmJob and PictureOutput.
 MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output);
 
-/// A preview, then the picture whenever it is better (host/app/grow_picture.h). Throws Error(interrupted) when that
-/// comes before the preview, and as Light, FilmJob and PictureOutput.
-MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, PictureOutput& output);
+/// A preview, then the picture whenever it is better (host/app/grow_picture.h). `choose`, if given, may change the goal
+/// and the settings of the prepared scene's light after the preview. Throws Error(interrupted) when that comes before
+/// the preview, and as Light, FilmJob and PictureOutput.
+MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
+                                      const std::function<PictureGoal(const PictureGoal&)>& choose,
+                                      PictureOutput& output);
 
 } // namespace pointgi

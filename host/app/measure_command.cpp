@@ -84,6 +84,20 @@ void print_front(Trade& trade) {
               trade.spent_seconds, trade.budget_seconds);
 }
 
+/// Errors that the reference's noise hides.
+void warn_of_noise(const Trade& trade) {
+  std::size_t front = 0, hidden = 0;
+  for (const MeasuredRun& run : trade.runs) {
+    front += run.on_front;
+    hidden += run.on_front && run.error.low <= 0.0;
+  }
+  if (2 * hidden > front)
+    spdlog::warn(
+        "the reference is too noisy for small errors: the intervals of {} of {} settings reach 0; a larger --budget, "
+        "or --reference, gives a better one",
+        hidden, front);
+}
+
 void print_recommendation(const Trade& trade, double target) {
   if (const auto best = fastest_within_error(trade, target)) {
     std::printf("the fastest to a relMSE of %.3g:\n%s\n", target, command_of(trade, trade.runs[*best]).c_str());
@@ -106,6 +120,7 @@ ExitCode run_measure(const MeasureCommand& command) {
       measure(context, options, run.control(), [&](const Trade& trade) { save(options.folder, trade); });
   run.end_progress();
   print_front(measured.trade);
+  warn_of_noise(measured.trade);
   store_trade(measured.trade);
   write_report(measured.trade, json_of(measured.trade), options.folder);
   if (command.target) print_recommendation(measured.trade, *command.target);

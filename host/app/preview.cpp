@@ -1,7 +1,6 @@
 #include "host/app/preview.h"
 #include "host/run.h"
 #include <algorithm>
-#include <utility>
 
 namespace pointgi {
 
@@ -47,19 +46,6 @@ private:
   Own own_;
 };
 
-/// The stages of a preview are none of the run's.
-class OwnStages {
-public:
-  explicit OwnStages(StageLog& stages) : stages_(stages), outer_(std::exchange(stages, StageLog())) {}
-  ~OwnStages() { stages_ = std::move(outer_); }
-  OwnStages(const OwnStages&) = delete;
-  OwnStages& operator=(const OwnStages&) = delete;
-
-private:
-  StageLog& stages_;
-  StageLog outer_;
-};
-
 } // namespace
 
 PreviewCost write_preview(const api::Context& context, const api::Prepared& prepared, const api::FilmOptions& film,
@@ -72,7 +58,7 @@ PreviewCost write_preview(const api::Context& context, const api::Prepared& prep
     const RunControl silent{run.stop, {}, {}};
     const RunScope scope(silent);
     const CheapSettings cheap(*prepared.parts(), seconds);
-    const OwnStages own(stages);
+    const StagesApart apart(stages);
     api::LightOptions how;
     how.photons = false;
     const api::Light light(prepared, how, silent);

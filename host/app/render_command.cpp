@@ -67,6 +67,10 @@ std::string output_of(const RenderOptions& options) {
   return options.output.empty() ? std::filesystem::path(options.input).stem().string() + ".exr" : options.output;
 }
 
+bool has_open_goal(const RenderOptions& options) {
+  return options.seconds || options.error;
+}
+
 /// Everything that can be refused is refused here, before the work and not after it. `chosen`: overrides of the scene
 /// file, over which flags win.
 api::Scene checked_scene(const RenderOptions& options, const std::vector<std::string>& chosen = {}) {
@@ -75,6 +79,9 @@ api::Scene checked_scene(const RenderOptions& options, const std::vector<std::st
   light_paths(options.paths, {}); // before a large scene is read
   if (options.spp && (options.seconds || options.error))
     throw Error(ErrorKind::usage, std::string("--spp: the samples follow from ") +
+                                      (options.seconds ? "--time" : "--error") + "; leave one of the two out");
+  if (options.quality != "normal" && has_open_goal(options))
+    throw Error(ErrorKind::usage, std::string("--quality: the settings follow from ") +
                                       (options.seconds ? "--time" : "--error") + "; leave one of the two out");
   std::vector<std::string> overrides = chosen;
   for (const std::string& own : picture_overrides_of(options))
@@ -123,10 +130,6 @@ double pixels_of(const api::FilmOptions& film, const RenderSettings& render) {
   return double{1.0} * (x1 - x0) * (y1 - y0);
 }
 
-bool has_open_goal(const RenderOptions& options) {
-  return options.seconds || options.error;
-}
-
 /// The settings of the light as --set would give them.
 std::vector<std::string> light_overrides_of(const RenderOptions& options) {
   std::vector<std::string> all = options.overrides;
@@ -145,34 +148,42 @@ std::optional<ChosenSetting> setting_for(const RenderOptions& options, const Sce
   const std::optional<Trade> trade = trade_for(options, device);
   if (!trade) return std::nullopt;
   std::optional<ChosenSetting> setting =
-      has_open_goal(options) ? choose_by_trade(*trade, options, options.overrides, pixels, begun)
+      has_open_goal(options) ? choose_by_trade(*trade, options, pixels, begun)
                              : forecast_of(*trade, light_overrides_of(options), scene.render.spp, pixels);
   if (setting) spdlog::info("{}: {}", options.input, setting->told);
   return setting;
 }
 
-/// Without a measurement of the scene: what presets reached on others of its kind. Sets the light's settings of the
+/// What presets reached on scenes of its kind.
+void tell_of_kind(const RenderOptions& options, const std::string& kind) {
+  if (const auto errors = errors_of_kind(options.quality, kind))
+    spdlog::info(
+        "expected: relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had; `pointgi info` tells the seconds",
+        errors->first, errors->second, kind);
+}
+
+/// Without a measurement of the scene, by what presets reached on others of its kind: sets the light's settings of the
 /// preset that --time and --error choose.
-std::optional<ChosenSetting> setting_of_kind(const RenderOptions& options, const api::Prepared& prepared,
-                                             const api::FilmOptions& film, const std::string& kind,
-                                             const RunControl& run) {
+PictureGoal choose_of_kind(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
+                           const PictureGoal& goal, const RunControl& run) {
+  // A part of the light is solved for an estimate: a few seconds.
+  constexpr double least_for_estimate = 15.0;
   api::Prepared::Parts& parts = *prepared.parts();
-  if (!has_open_goal(options)) {
-    if (const auto errors = errors_of_kind(options.quality, kind))
-      spdlog::info("expected: relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had; `pointgi info` tells the "
-                   "seconds",
-                   errors->first, errors->second, kind);
-    return std::nullopt;
-  }
+  const std::string kind = kind_of_scene(parts.scene, parts.ready);
   double light_seconds = 0.0;
-  if (options.seconds)
+  if (options.seconds && *options.seconds - parts.context->stages.seconds() < least_for_estimate)
+    light_seconds = *options.seconds; // the least preset is safe
+  else if (options.seconds)
     for (const api::StageEstimate& stage : api::estimate_picture(prepared, film, run).stages)
       if (stage.runs && stage.stage != "render" && stage.stage != "cloud" && stage.stage != "octree")
         light_seconds += stage.seconds;
   const PresetChoice choice = choose_by_presets(kind, options, light_seconds, parts.context->stages.seconds());
   apply_preset(preset_named(choice.preset, "--quality"), parts.scene, true);
+  parts.quality = choice.preset;
   spdlog::info("{}: {}", options.input, choice.setting.told);
-  return choice.setting;
+  PictureGoal chosen = choice.setting.goal;
+  chosen.seconds_a_sample = goal.seconds_a_sample;
+  return chosen;
 }
 
 /// A picture of more pixels does not grow unless that is asked for: a film of 40 floats a pixel is kept.
@@ -217,29 +228,39 @@ ExitCode run_render(const RenderOptions& options) {
     description = scene.parts()->description();
   }
   const api::Prepared prepared(context, scene, run.control());
-  const std::string kind = kind_of_scene(prepared.parts()->scene, prepared.parts()->ready);
-  std::optional<ChosenSetting> of_kind;
-  if (!setting && options.integrator != "path") of_kind = setting_of_kind(options, prepared, film, kind, run.control());
+  const bool of_kind = !setting && options.integrator != "path";
+  if (of_kind && !has_open_goal(options))
+    tell_of_kind(options, kind_of_scene(prepared.parts()->scene, prepared.parts()->ready));
+  std::function<PictureGoal(const PictureGoal&)> choose;
+  if (of_kind && has_open_goal(options))
+    choose = [&](const PictureGoal& goal) { return choose_of_kind(options, prepared, film, goal, run.control()); };
   PictureOutput output(output_of(options), description.render.auto_exposure
                                                ? std::nullopt
                                                : std::optional<double>(description.render.exposure));
   const PictureRun picture{context, prepared, film, options.integrator == "path", run.control()};
   const MadePictureFiles made =
-      grows(options, pixels) ? make_growing_picture(picture, goal_of(options, setting ? setting : of_kind, description.render.spp), output)
-                             : make_picture_at_once(picture, output);
+      grows(options, pixels)
+          ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), choose, output)
+          : make_picture_at_once(picture, output);
   if (description.render.auto_exposure)
     spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,
                  output.png_light().exposure);
   if (made.light && !made.interrupted)
     warn_of_exposure(output.png_light(), prepared.parts()->scene, prepared.parts()->ready);
-  if (made.light) write_reports(options, *made.light->parts(), made.totals);
+  if (made.light)
+    write_reports(options, *made.light->parts(), made.totals);
+  else if (!options.stats_file.empty() || !options.trace_file.empty())
+    spdlog::warn("--stats and --trace are not written, as the light was not solved");
   run.end_progress();
   std::printf("%s\n%s\n", output.exr_path().c_str(), output.png_path().c_str());
   if (made.interrupted) {
     spdlog::warn("interrupted: {}", made.told);
     return ExitCode::interrupted;
   }
-  if (!made.told.empty()) spdlog::info("{}", made.told);
+  if (!made.light)
+    spdlog::warn("{}", made.told);
+  else if (!made.told.empty())
+    spdlog::info("{}", made.told);
   spdlog::info("{} splats, {:.1f} million rays, {} ({} of kernels on the device)", prepared.size(),
                1e-6 * static_cast<double>(made.totals.rays), duration_text(device.stages.seconds()),
                duration_text(kernel_seconds(device.session)));

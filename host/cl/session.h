@@ -140,7 +140,6 @@ public:
   std::size_t programs_kept_by_driver() const { return kept_by_driver_; }
   std::uint64_t held_bytes() const { return bytes_->now; }
   std::uint64_t peak_bytes() const { return bytes_->peak; }
-  std::uint64_t bytes_held() const { return bytes_->now; }
   /// From now on peak_bytes() is of what is there now and comes later.
   void forget_peak() { bytes_->peak = bytes_->now; }
   /// What the device may still have for what is kept on it. Half of it where its memory is the host's.

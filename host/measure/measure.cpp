@@ -139,7 +139,13 @@ private:
     std::error_code ignored;
     const std::string path = path_of(trade_json_name);
     if (!fs::exists(path, ignored)) return;
-    Trade earlier = read_trade(path);
+    Trade earlier;
+    try {
+      earlier = read_trade(path);
+    } catch (const Error& error) { // of an older program, or damaged
+      log_info("{}; it is replaced", error.what());
+      return;
+    }
     const bool same = earlier.version == trade_.version && earlier.scene == trade_.scene &&
                       earlier.device == trade_.device && earlier.overrides == trade_.overrides &&
                       earlier.state == trade_.state && !earlier.runs.empty() && earlier.runs.front().name == own_name &&
@@ -154,6 +160,7 @@ private:
     if (errors_.count(own_name) == 0) {
       log_info("{} is not there or damaged, without which {} cannot be gone on with; both are replaced",
                path_of(kept_errors_name), path);
+      errors_.clear();
       return;
     }
     std::optional<MadeReference> made;
@@ -200,10 +207,14 @@ private:
       made_ = trace_reference(
           maker_, most, [this] { return elapsed(); }, inner_);
       if (user_stops()) throw Error(ErrorKind::interrupted, "interrupted while the reference was made");
+      // Runs of another reference must not be gone on with.
+      for (const char* name : {trade_json_name, kept_errors_name})
+        fs::remove(path_of(name));
       keep_reference(made_, options_.folder);
     }
     trade_.reference.source = made_.source;
     trade_.reference.seconds = made_.seconds;
+    trade_.reference.file = options_.reference_file;
   }
 
   std::pair<int, int> chosen_size(int width, int height) {
@@ -227,8 +238,8 @@ private:
     return whole;
   }
 
-  /// A picture by little of everything, which runs most kernels for the first time: the scene's own setting may be dear,
-  /// and would have to be measured twice.
+  /// A picture by little of everything, which runs most kernels for the first time: the scene's own setting may be
+  /// dear, and would have to be measured twice.
   void load_kernels() {
     const Scene& scene = maker_.scene(inner_);
     std::vector<std::string> little{"radiosity.tolerance=0.1"};

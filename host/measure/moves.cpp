@@ -95,6 +95,27 @@ Overrides cheapest(const std::vector<Knob>& knobs, const std::string& method) {
   return result;
 }
 
+std::string name_about(const Overrides& overrides, const Overrides& start, const std::string& start_name,
+                       const std::vector<Knob>& knobs, const std::string& method) {
+  const std::string now = method_of(overrides, method);
+  const auto is_of_another_method = [&](const std::string& key) {
+    return key != method_key && std::any_of(knobs.begin(), knobs.end(), [&](const Knob& knob) {
+             return !knob.method.empty() && knob.method != now && is_of(knob, key);
+           });
+  };
+  const auto has_key = [&](const std::string& key) {
+    return std::any_of(overrides.begin(), overrides.end(),
+                       [&](const std::string& text) { return key_of(text) == key; });
+  };
+  for (const std::string& text : start)
+    if (!has_key(key_of(text)) && !is_of_another_method(key_of(text))) return name_of_overrides(overrides);
+  Overrides besides;
+  for (const std::string& text : overrides)
+    if (!has(start, text)) besides.push_back(text);
+  if (start.empty() || besides.empty()) return name_of_overrides(overrides);
+  return start_name + "_" + name_of_overrides(besides);
+}
+
 std::string name_of_overrides(const Overrides& overrides) {
   std::string name;
   for (const std::string& text : overrides) {

@@ -113,15 +113,23 @@ private:
 /// Of the device's memory, for the lights that are kept.
 constexpr double share_of_lights = 0.125;
 
-/// What the light depends on.
-std::string light_key(const std::vector<std::string>& overrides, unsigned seed) {
+/// Lights that are kept at most: on the host they hold some floats a point as well.
+constexpr std::size_t most_lights = 64;
+
+} // namespace
+
+/// What the light depends on. Where points take as many light samples as pixels have, of the samples, too.
+std::string PictureMaker::light_key(const std::vector<std::string>& overrides, unsigned seed) const {
+  std::vector<std::string> all = overrides_;
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  const Scene scene = api::Scene::from_file(file_, all).parts()->description();
   std::string key = std::to_string(seed) + "\n";
+  if (direct_light_by_radiosity(scene) && !scene.radiosity.light_samples)
+    key += "samples " + std::to_string(scene.render.spp) + "\n";
   for (const std::string& text : overrides)
     if (text.rfind("render.", 0) != 0) key += text + "\n";
   return key;
 }
-
-} // namespace
 
 std::uint64_t PictureMaker::bytes_of_others(const KeptLight* light) const {
   std::uint64_t bytes = 0;
@@ -135,11 +143,11 @@ PictureMaker::KeptLight PictureMaker::solve(const api::Prepared& prepared, bool 
   api::LightOptions how;
   how.path_tracing = by_paths;
   Session& session = context_.parts()->session;
-  const std::uint64_t before = session.bytes_held();
+  const std::uint64_t before = session.held_bytes();
   const Watch watch(*context_.parts(), bytes_of_others(nullptr));
   kept.light = std::make_unique<api::Light>(prepared, how, run);
   watch.tell(kept.cost);
-  const std::uint64_t after = session.bytes_held();
+  const std::uint64_t after = session.held_bytes();
   kept.bytes = after - std::min(before, after); // drivers give memory back late
   const IndirectLight& indirect = kept.light->parts()->light.indirect;
   kept.cost.method = indirect.method == nullptr ? "none" : indirect.method->name;
@@ -175,9 +183,16 @@ MadePicture PictureMaker::make(const std::vector<std::string>& overrides, unsign
   const NoVMapsKept anew;
   const auto most =
       static_cast<std::uint64_t>(share_of_lights * static_cast<double>(context_.parts()->session.info().memory_bytes));
-  while (!lights_.empty() && bytes_of_others(nullptr) > most)
+  while (!lights_.empty() && (bytes_of_others(nullptr) > most || lights_.size() >= most_lights))
     lights_.pop_back();
-  KeptLight light = solve(prepared_scene, false, run);
+  KeptLight light;
+  try {
+    light = solve(prepared_scene, false, run);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::memory || lights_.empty()) throw;
+    lights_.clear(); // perhaps their memory is what lacks
+    light = solve(prepared_scene, false, run);
+  }
   MadePicture made = film(light, film_options(seed), run);
   if (made.compiled) return made; // its time is not to be counted
   light.key = key;

@@ -62,6 +62,7 @@ private:
   MadePicture film(const KeptLight& light, const api::FilmOptions& options, const RunControl& run);
   api::FilmOptions film_options(unsigned seed) const;
   std::uint64_t bytes_of_others(const KeptLight* light) const; ///< held for all kept lights but this
+  std::string light_key(const std::vector<std::string>& overrides, unsigned seed) const;
 
   api::Context context_;
   std::string file_;

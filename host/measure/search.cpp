@@ -40,7 +40,8 @@ public:
     own.name = own_name;
     if (!once(place_of(own), budget)) return false;
     // Where there are few knobs, each may take more.
-    const double share = std::max(options_.longest_share, 0.5 / static_cast<double>(std::max<std::size_t>(1, knobs_.size())));
+    const double share =
+        std::max(options_.longest_share, 0.5 / static_cast<double>(std::max<std::size_t>(1, knobs_.size())));
     longest_ = std::max({share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
     const bool whole = choose_start() && singles() && combinations() && repeats();
     mark_front(trade_);
@@ -207,7 +208,8 @@ private:
     if (line.of_value.count(place) == 0 || after == nullptr || before == nullptr) return std::nullopt;
     Candidate candidate;
     candidate.run.setting.overrides = with_value(from.setting.overrides, knob, value, knobs_, method);
-    candidate.run.name = name_of_overrides(candidate.run.setting.overrides);
+    candidate.run.name =
+        name_about(candidate.run.setting.overrides, start().setting.overrides, start().name, knobs_, method);
     constexpr double least_left = 0.3; // of a sum that would be less
     candidate.seconds =
         std::max(seconds_of(from) + seconds_of(*after) - seconds_of(*before), least_left * seconds_of(from));
@@ -257,13 +259,14 @@ private:
     const double reserve = for_repeats * world_.left();
     for (;;) {
       std::vector<std::size_t> places;
+      const std::size_t before = trade_.runs.size();
       for (const Candidate& candidate : candidates()) {
         if (cost_of(candidate.run, candidate.seconds) > std::min(world_.left() - reserve, longest_)) continue;
         const std::size_t at = place_of(candidate.run);
         if (!once(at, std::min(world_.left(), longest_))) return false;
         if (trade_.runs[at].refused.empty()) places.push_back(at);
       }
-      if (places.empty()) return true;
+      if (places.empty() || trade_.runs.size() == before) return true;
       for (unsigned repeat = 1; repeat < options_.repeats; ++repeat) {
         places = better_half(places);
         for (const std::size_t at : places)

@@ -23,6 +23,8 @@ std::string file_of(const std::string& scene, const std::string& device) {
 void store_trade(const Trade& trade) {
   const std::string path = file_of(trade.scene, trade.device);
   if (path.empty()) return;
+  const std::optional<Trade> earlier = stored_trade(trade.scene, trade.device);
+  if (earlier && earlier->state == trade.state && earlier->runs.size() > trade.runs.size()) return;
   std::error_code ignored;
   fs::create_directories(fs::path(path).parent_path(), ignored);
   try {

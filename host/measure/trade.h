@@ -58,6 +58,7 @@ struct TradeReference {
   std::string picture;    ///< "pictures/reference.png"
   double own_noise = 0.0; ///< relMSE of the mean of its halves; taken off every error
   double seconds = 0.0;
+  std::string file = {}; ///< that was given; empty: path traced
 };
 
 struct Trade {

@@ -164,7 +164,7 @@ Trade trade_of(const Reader& in) {
   trade.spent_seconds = in["spent_seconds"].number();
   trade.prepare_seconds = in["prepare_seconds"].number();
   trade.reference = {reference["source"].text(), reference["picture"].text(), reference["own_noise"].number(),
-                     reference["seconds"].number()};
+                     reference["seconds"].number(), reference["file"].text()};
   trade.runs = in["runs"].list(run_of);
   trade.knobs = in["knobs"].list(knob_of);
   return trade;
@@ -188,7 +188,8 @@ std::string json_of(const Trade& trade) {
                {{"source", trade.reference.source},
                 {"picture", trade.reference.picture},
                 {"own_noise", json_number(trade.reference.own_noise)},
-                {"seconds", json_number(trade.reference.seconds)}}},
+                {"seconds", json_number(trade.reference.seconds)},
+                {"file", trade.reference.file}}},
               {"runs", json::array()},
               {"knobs", json::array()}};
   for (const MeasuredRun& run : trade.runs)

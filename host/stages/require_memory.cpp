@@ -13,7 +13,7 @@ namespace pointgi {
 
 namespace {
 
-/// "needs 12 MiB, and the device has 3 MiB left of 8 MiB".
+/// "needs 12 MiB of a device, which has 3 MiB left of 8 MiB".
 std::string needs(const Session& session, std::uint64_t bytes) {
   return fmt::format("needs {} of {}, which has {} left of {}", megabytes(bytes), session.info().name,
                      megabytes(session.bytes_left()), megabytes(session.info().memory_bytes));

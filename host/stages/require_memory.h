@@ -23,8 +23,8 @@ void require_pool_memory(const Session& session, const ScenePoints& points, cons
                          const TraversalVariant& variant);
 
 /// The light of the scene on the device: the method's stage where the scene names it, and photons where `photons`.
-/// Closed forms alone (host/stages/device_need.h): what "directions" can do without, and half of the photons, which
-/// other than these end on no surface. Throws Error(memory).
+/// Closed forms alone (host/stages/device_need.h), of the least: "directions" without kept hits, and half of the
+/// photons, as the others may end on no surface. Throws Error(memory).
 void require_light_memory(const Session& session, const IndirectRequest& request, const ScenePoints& points,
                           bool photons);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pointgi {
@@ -38,6 +39,21 @@ public:
 private:
   std::chrono::steady_clock::time_point begin_;
   std::vector<StageRecord> records_;
+};
+
+/// While one lives, what is done is logged apart, and not in the log that it was made of.
+class StagesApart {
+public:
+  explicit StagesApart(StageLog& log) : log_(log), before_(std::exchange(log, StageLog())) {}
+  ~StagesApart() { log_ = std::move(before_); }
+  StagesApart(const StagesApart&) = delete;
+  StagesApart& operator=(const StagesApart&) = delete;
+
+  const StageLog& before() const { return before_; }
+
+private:
+  StageLog& log_;
+  StageLog before_;
 };
 
 } // namespace pointgi

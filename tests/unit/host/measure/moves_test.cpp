@@ -73,4 +73,14 @@ TEST_CASE("the cheapest setting of a method, which a run is named by") {
   CHECK(cheap == Overrides{"caustics.photons=1000", "radiosity.directions=32", "radiosity.method=directions"});
   CHECK(cheapest(all, "none") == Overrides{"caustics.photons=1000"});
   CHECK(name_of_overrides(cheap) == "photons-1000_directions-32_method-directions");
+  const auto name = [&](const Overrides& overrides) {
+    return name_about(overrides, cheap, "cheap", all, "directions");
+  };
+  CHECK(name({"caustics.photons=1000", "radiosity.directions=512", "radiosity.method=directions", "render.spp=2"}) ==
+        "cheap_directions-512_spp-2");
+  CHECK(name({"caustics.photons=1000", "radiosity.method=none"}) == "cheap_method-none");
+  // Photons are the scene's own.
+  CHECK(name({"radiosity.directions=32", "radiosity.method=directions"}) == "directions-32_method-directions");
+  CHECK(name({"radiosity.method=none"}) == "method-none");
+  CHECK(name_about({"render.spp=2"}, {}, "own", all, "directions") == "spp-2");
 }
