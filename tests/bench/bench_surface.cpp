@@ -4,6 +4,7 @@
 ///   bench_surface [--markdown FILE] [--rounds K] [--size WxH,…] CLOUD.ply …
 #include "host/passes/ray_packets.h"
 #include "host/render/render.h"
+#include "host/repeats.h"
 #include "host/stages/light_stages.h"
 #include "host/stages/prepared_scene.h"
 #include "host/tune/profile.h"
@@ -173,7 +174,8 @@ std::string measure(Session& session, const std::string& cloud, Size size, int r
   char row[200];
   std::snprintf(row, sizeof row, "| %s, %zu | %dx%d | %.2f | %.2f | %.2f | %.2f |\n",
                 std::filesystem::path(cloud).stem().c_str(), discs.ready().points.size(), size.width, size.height,
-                1.0 / median(of_patches), 1.0 / median(of_discs), 1.0 / median(of_embree), median(ratios));
+                1.0 / median_of_repeats(of_patches), 1.0 / median_of_repeats(of_discs),
+                1.0 / median_of_repeats(of_embree), median_of_repeats(ratios));
   std::printf("%s", row);
   std::fflush(stdout);
   return row;

@@ -4,6 +4,7 @@
 #include "host/passes/build_pools.h"
 #include "host/passes/device_pools.h"
 #include "host/passes/ray_packets.h"
+#include "host/repeats.h"
 #include "host/scene/lighting.h"
 #include "host/stages/prepare.h"
 #include "host/tune/profile.h"
@@ -85,13 +86,13 @@ struct Pairs {
     std::vector<double> ratios;
     for (std::size_t k = 0; k < ours.size(); ++k)
       ratios.push_back(theirs[k] / ours[k]);
-    return median(ratios);
+    return median_of_repeats(ratios);
   }
 };
 
 nlohmann::json report_rays(const char* kind, const Pairs& pairs, std::size_t rays) {
-  const double ours = 1e-6 * static_cast<double>(rays) / median(pairs.ours),
-               theirs = 1e-6 * static_cast<double>(rays) / median(pairs.theirs);
+  const double ours = 1e-6 * static_cast<double>(rays) / median_of_repeats(pairs.ours),
+               theirs = 1e-6 * static_cast<double>(rays) / median_of_repeats(pairs.theirs);
   std::printf("  %-10s %7.2f Mrays/s   Embree %7.2f   ratio %.2f\n", kind, ours, theirs, pairs.ratio());
   return {{"mrays_per_s", ours}, {"embree_mrays_per_s", theirs}, {"ratio", pairs.ratio()}};
 }
@@ -178,8 +179,8 @@ nlohmann::json measure_borders(Tracer& ending, Tracer& whole, const std::vector<
       ratios.push_back(with / warm_seconds_of([&] { trace(whole, eye); }));
     }
     std::printf("  borders    %s rays take %.3f of the time that whole discs take\n", eye ? "eye" : "bounced",
-                median(ratios));
-    row[eye ? "coherent" : "incoherent"] = median(ratios);
+                median_of_repeats(ratios));
+    row[eye ? "coherent" : "incoherent"] = median_of_repeats(ratios);
   }
   return row;
 }
@@ -224,9 +225,11 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
     row["borders"]["share"] = static_cast<double>(clips.size()) / static_cast<double>(splats.size());
   }
   const double share = 1.0 / build.ratio();
-  row["build"] = {{"seconds", median(build.ours)}, {"embree_seconds", median(build.theirs)}, {"ratio", share}};
-  std::printf("  %-10s %7.3f s         Embree %7.3f   ratio %.2f\n", "build", median(build.ours), median(build.theirs),
-              share);
+  row["build"] = {{"seconds", median_of_repeats(build.ours)},
+                  {"embree_seconds", median_of_repeats(build.theirs)},
+                  {"ratio", share}};
+  std::printf("  %-10s %7.3f s         Embree %7.3f   ratio %.2f\n", "build", median_of_repeats(build.ours),
+              median_of_repeats(build.theirs), share);
   std::fflush(stdout);
   return row;
 }
