@@ -28,6 +28,7 @@ public:
     r.light_samples = 1;
     r.tolerance = 0.1;
     scene_.caustics = {};
+    scene_.caustics.photons = 0;
   }
   ~CheapSettings() {
     scene_.radiosity = own_.radiosity;
@@ -59,9 +60,7 @@ PreviewCost write_preview(const api::Context& context, const api::Prepared& prep
     const RunScope scope(silent);
     const CheapSettings cheap(*prepared.parts(), seconds);
     const StagesApart apart(stages);
-    api::LightOptions how;
-    how.photons = false;
-    const api::Light light(prepared, how, silent);
+    const api::Light light(prepared, {}, silent);
     api::FilmOptions few = film;
     few.spp = samples;
     api::FilmJob job(*light.parts(), few);

@@ -23,11 +23,12 @@ look_at = [0.0, 0.5, 0.0]
 [environment]
 radiance = [0.3, 0.4, 0.5]
 [[light]]
-type = "sun"
+type = "directional"
 direction = [-0.4, -1.0, -0.3]
 irradiance = [2.0, 2.0, 1.8]
 [[material]]
 name = "grey"
+type = "diffuse"
 albedo = [0.6, 0.6, 0.6]
 [[material]]
 name = "mirror"
@@ -86,8 +87,7 @@ TEST_CASE("a picture that an error ends has no more noise than that, and its sam
 
 TEST_CASE("a time that is short still gives a whole picture") {
   const Picture picture = test::render_text(room, [](RenderOptions& options) { options.seconds = 1e-3; });
-  CHECK(test::smallest(picture, "A") > 0.0);
-  CHECK(test::mean(picture, "R") > 0.0);
+  CHECK(test::smallest(picture, "R") > 0.0);
 }
 
 TEST_CASE("a film that is stopped keeps all rows, some of them with more samples") {
@@ -102,7 +102,7 @@ TEST_CASE("a film that is stopped keeps all rows, some of them with more samples
   const auto nothing = [](double) {};
   film.grow(32, nothing, [] { return false; });
   int asked = 0;
-  film.grow(64, nothing, [&] { return ++asked > 3; });
+  film.grow(64, nothing, [&] { return ++asked > 1; });
   CHECK(film.samples() == 32);
   double least = 1e300;
   int rows = 0;

@@ -123,7 +123,11 @@ Words arguments_of(const std::string& line, std::string& before) {
   if (words.empty() || std::find(words.begin(), words.end(), "--help") != words.end()) return words;
   if (words[0] == "render") {
     set_option(words, "--size", "32x24");
-    set_option(words, "--spp", "1");
+    const auto has = [&](const char* option) { return std::find(words.begin(), words.end(), option) != words.end(); };
+    if (has("--time"))
+      set_option(words, "--time", "1");
+    else if (!has("--error"))
+      set_option(words, "--spp", "1");
     set_option(words, "--pixelbounds", "4,20,2,14", false);
     words.insert(words.end(), {"--set", "caustics.photons=2000"});
   }

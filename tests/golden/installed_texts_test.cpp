@@ -106,7 +106,7 @@ TEST_CASE("bash completes a command's options and no other's") {
   first.insert(commands.at("").begin(), commands.at("").end());
   CHECK(complete("''") == first);
   CHECK(complete("ren") == Words{"render"});
-  CHECK(complete("render x.toml --quality ''") == Words{"draft", "high", "normal"});
+  CHECK(complete("render x.toml --quality ''") == Words{"draft", "final", "high", "normal"});
   CHECK(complete("render x.toml --in") == Words{"--integrator"});
   CHECK(complete("render ''").empty()); // files
 }

@@ -66,7 +66,8 @@ TEST_CASE("a time leaves out settings that are too slow for it, and says what co
 TEST_CASE("an error takes the fastest setting that reaches it, within a time where both are given") {
   RenderOptions options;
   options.error = 0.05;
-  CHECK(choose_by_trade(trade_of("a"), options, pixels, 0.0)->overrides.size() == 2);
+  CHECK(choose_by_trade(trade_of("a"), options, 1e4, 0.0)->overrides.size() == 2);
+  CHECK(choose_by_trade(trade_of("a"), options, pixels, 0.0)->overrides.empty()); // fewer samples, of many pixels
   options.error = 0.01;
   const auto fine = choose_by_trade(trade_of("a"), options, pixels, 0.0);
   CHECK(fine->overrides.empty());
