@@ -260,36 +260,6 @@ TEST_CASE("an interrupted render keeps a partial picture, and a killed one keeps
   CHECK(partial.height == 2000);
 }
 
-TEST_CASE("a growing picture is whole whenever it is interrupted") {
-  const TemporaryFolder folder;
-  const std::string lit = std::string(small_scene()) + "[environment]\nradiance = [1.0, 1.0, 1.0]\n";
-  const std::string scene = folder.write("ball.toml", lit), out = folder.file("x.exr");
-  const std::string slow = "render " + scene + " --progressive --size 600x800 --spp 65536 -o " + out;
-  REQUIRE(run_program("render " + scene + " -o " + out).code == 0); // builds the kernels
-  std::filesystem::remove(out);
-  for (const char* seconds : {"4", "16", "64"}) { // until the first picture is there, on any machine
-    const Run run = run_program(slow, std::string("timeout --foreground --preserve-status -s INT ") + seconds);
-    CHECK(run.code == 130);
-    CHECK_THAT(run.err, Contains("interrupted"));
-    if (std::filesystem::exists(out)) break;
-  }
-  const Picture picture = read_exr(out);
-  CHECK(picture.width == 600);
-  REQUIRE(picture.height == 800);
-  // The environment is everywhere: no row is black.
-  const std::vector<float>& red = picture.channels.at("R");
-  for (std::size_t y = 0; y < 800; ++y)
-    CHECK(red[y * 600] > 0.0f);
-}
-
-TEST_CASE("samples and what they follow from are not both given") {
-  const TemporaryFolder folder;
-  const std::string scene = folder.write("ball.toml", small_scene());
-  const Run run = run_program("render " + scene + " --spp 8 --time 10 -o " + folder.file("x.exr"));
-  CHECK(run.code == 2);
-  CHECK_THAT(run.err, Contains("error: --spp: the samples follow from --time; leave one of the two out"));
-}
-
 TEST_CASE("an interrupt between the launches of the device ends the program with a word") {
   const TemporaryFolder folder;
   std::mt19937 g(1);
