@@ -48,8 +48,9 @@ void GrowingFilm::load_kernels() {
   RenderTotals ignored;
   bool launched = false;
   const TileFilms films{{}, [](int, int, const std::vector<float>&) {}};
-  passes_.run({0, std::min(band_rows, height_), 0, GRID_RAYS}, films, ignored, [](double) {},
-              [&] { return std::exchange(launched, true); });
+  passes_.run(
+      {0, std::min(band_rows, height_), 0, GRID_RAYS}, films, ignored, [](double) {},
+      [&] { return std::exchange(launched, true); });
 }
 
 pg_uint GrowingFilm::samples() const {
