@@ -92,8 +92,9 @@ public:
       if (goal_.error) noise = relative_noise(*film_);
       if (worth_writing(next)) write();
     }
-    context_.stages.finish(rays(), "rays", film_->device_seconds());
-    return last();
+    const RenderTotals totals = film_->resolve([](const Band&) {});
+    context_.stages.finish(totals.rays, "rays", totals.device_seconds);
+    return last(totals);
   }
 
 private:
@@ -139,13 +140,9 @@ private:
     written_samples_ = film_->samples();
   }
 
-  std::uint64_t rays() const {
-    return film_->resolve([](const Band&) {}).rays;
-  }
-
-  GrownPicture last() {
+  GrownPicture last(const RenderTotals& totals) {
     GrownPicture grown;
-    grown.totals = film_->resolve([](const Band&) {});
+    grown.totals = totals;
     grown.totals.interrupted = stop_asked();
     grown.samples = static_cast<int>(film_->samples());
     grown.noise = relative_noise(*film_);

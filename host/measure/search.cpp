@@ -188,6 +188,7 @@ private:
   struct Candidate {
     MeasuredRun run;
     double seconds = 0.0, error = 0.0; ///< foretold
+    double cost = 0.0;                 ///< of a first measurement; asked once, as a scene may be read for it
     double rank = 0.0;
   };
 
@@ -230,11 +231,13 @@ private:
       for (const Line& line : lines_)
         for (std::size_t v = 0; v < line.knob->values.size() && !line.knob->is_of_several_keys; ++v)
           if (auto candidate = moved(from, line, v);
-              candidate && candidate->rank <= hopeless && known.insert(candidate->run.setting.overrides).second)
+              candidate && candidate->rank <= hopeless && known.insert(candidate->run.setting.overrides).second) {
+            candidate->cost = cost_of(candidate->run, candidate->seconds);
             all.push_back(*candidate);
+          }
     }
     std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-      return a.rank != b.rank ? a.rank < b.rank : cost_of(a.run, a.seconds) < cost_of(b.run, b.seconds);
+      return a.rank != b.rank ? a.rank < b.rank : a.cost < b.cost;
     });
     if (all.size() > options_.candidates) all.resize(options_.candidates);
     return all;
@@ -261,7 +264,7 @@ private:
       std::vector<std::size_t> places;
       const std::size_t before = trade_.runs.size();
       for (const Candidate& candidate : candidates()) {
-        if (cost_of(candidate.run, candidate.seconds) > std::min(world_.left() - reserve, longest_)) continue;
+        if (candidate.cost > std::min(world_.left() - reserve, longest_)) continue;
         const std::size_t at = place_of(candidate.run);
         if (!once(at, std::min(world_.left(), longest_))) return false;
         if (trade_.runs[at].refused.empty()) places.push_back(at);

@@ -24,9 +24,6 @@ public:
   /// Hands all rows to `take`, those of no samples black; the totals are those of all growths.
   RenderTotals resolve(const std::function<void(const Band&)>& take) const;
 
-  /// Launches took so long [s of the device].
-  double device_seconds() const { return totals_.device_seconds; }
-
 private:
   std::vector<float> tile_of(std::size_t band, int column, int columns) const;
 
