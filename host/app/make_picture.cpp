@@ -1,5 +1,7 @@
 #include "host/app/make_picture.h"
 #include "host/app/preview.h"
+#include "host/cl/resource_error.h"
+#include "host/free_memory.h"
 #include "host/run.h"
 #include <cmath>
 #include <fmt/format.h>
@@ -25,6 +27,17 @@ std::string told_of(const GrownPicture& grown, const PictureGoal& goal) {
                                  : fmt::format(", relMSE of the noise about {:.2g}", noise);
   if (goal.error && all > *goal.error) text += fmt::format("; {:.3g} was not reached", *goal.error);
   return text;
+}
+
+/// Before an older picture is replaced by a preview of one that cannot be made.
+void require_film_memory(double pixels) {
+  const auto wanted = static_cast<std::uint64_t>(pixels * FILM_CHANNELS_CAUSTIC * sizeof(float));
+  const std::optional<std::uint64_t> left = free_memory();
+  if (left && wanted > *left)
+    throw Error(ErrorKind::memory,
+                fmt::format("a picture that gets better keeps a film of {} in memory, of which {} are free; leave out "
+                            "--time, --error and --progressive, or set a smaller --size",
+                            megabytes(wanted), megabytes(*left)));
 }
 
 } // namespace
@@ -62,6 +75,7 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
   RunControl in_time = run.control;
   in_time.stop = [&] { return user_stops() || (goal.until && stages.seconds() > *goal.until); };
   try {
+    require_film_memory(run.pixels);
     api::require_memory(run.prepared, {true, run.by_paths}); // or an older picture would be lost to a first one
     if (!run.by_paths) {
       const double seconds = goal.until ? share_of_preview * *goal.until : usual_preview;

@@ -10,6 +10,7 @@ struct PictureRun {
   const api::Prepared& prepared;
   const api::FilmOptions& film;
   bool by_paths;
+  double pixels; ///< of its window
   const RunControl& control;
 };
 
@@ -26,7 +27,8 @@ MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& outp
 
 /// A preview, then the picture whenever it is better (host/app/grow_picture.h). `choose`, if given, may change the goal
 /// and the settings of the prepared scene's light after the preview. Throws Error(interrupted) when that comes before
-/// the preview, and as Light, FilmJob and PictureOutput.
+/// the preview, Error(memory) where its film does not fit beside what the machine holds, and as Light, FilmJob and
+/// PictureOutput.
 MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
                                       const std::function<PictureGoal(const PictureGoal&)>& choose,
                                       PictureOutput& output);

@@ -154,12 +154,25 @@ std::optional<ChosenSetting> setting_for(const RenderOptions& options, const Sce
   return setting;
 }
 
-/// What presets reached on scenes of its kind.
-void tell_of_kind(const RenderOptions& options, const std::string& kind) {
+/// What presets reached on scenes of its kind, and how long the picture takes.
+void tell_of_kind(const RenderOptions& options, const api::Prepared& prepared, const std::string& seconds) {
+  const std::string kind = kind_of_scene(prepared.parts()->scene, prepared.parts()->ready);
   if (const auto errors = errors_of_kind(options.quality, kind))
-    spdlog::info(
-        "expected: relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had; `pointgi info` tells the seconds",
-        errors->first, errors->second, kind);
+    spdlog::info("expected: relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had; {}", errors->first,
+                 errors->second, kind, seconds);
+  else
+    spdlog::info("expected: {}", seconds);
+}
+
+/// Where somebody waits for it: a part of the work is done for the estimate.
+PictureGoal told_goal(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
+                      const PictureGoal& goal, const RunControl& run) {
+  double seconds = 0.0;
+  for (const api::StageEstimate& stage : api::estimate_picture(prepared, film, run).stages)
+    if (stage.runs && stage.stage != "scene" && stage.stage != "cloud" && stage.stage != "octree")
+      seconds += stage.seconds;
+  tell_of_kind(options, prepared, duration_text(seconds) + " from here");
+  return goal;
 }
 
 /// Without a measurement of the scene, by what presets reached on others of its kind: sets the light's settings of the
@@ -229,15 +242,17 @@ ExitCode run_render(const RenderOptions& options) {
   }
   const api::Prepared prepared(context, scene, run.control());
   const bool of_kind = !setting && options.integrator != "path";
-  if (of_kind && !has_open_goal(options))
-    tell_of_kind(options, kind_of_scene(prepared.parts()->scene, prepared.parts()->ready));
   std::function<PictureGoal(const PictureGoal&)> choose;
   if (of_kind && has_open_goal(options))
     choose = [&](const PictureGoal& goal) { return choose_of_kind(options, prepared, film, goal, run.control()); };
+  else if (of_kind && grows(options, pixels) && !options.quiet)
+    choose = [&](const PictureGoal& goal) { return told_goal(options, prepared, film, goal, run.control()); };
+  else if (of_kind)
+    tell_of_kind(options, prepared, "`pointgi info` tells the seconds");
   PictureOutput output(output_of(options), description.render.auto_exposure
                                                ? std::nullopt
                                                : std::optional<double>(description.render.exposure));
-  const PictureRun picture{context, prepared, film, options.integrator == "path", run.control()};
+  const PictureRun picture{context, prepared, film, options.integrator == "path", pixels, run.control()};
   const MadePictureFiles made =
       grows(options, pixels)
           ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), choose, output)

@@ -31,6 +31,8 @@ struct Row {
   std::vector<const char*> with = {}; ///< overrides that go with every value
 };
 
+constexpr const char* method_key = "radiosity.method";
+
 /// --quality, whose values stand for several keys.
 constexpr const char* quality_name = "quality";
 
@@ -263,25 +265,47 @@ KnobValue value_of(const Row& row, const std::string& text, const KnobScene& of)
   const double pairs = 0.5 * static_cast<double>(of.points) * static_cast<double>(of.points);
   // "auto" takes time to choose, and might choose otherwise where a key differs.
   value.own = text == row.own(of.scene) && (method.empty() || method == of.scene.radiosity.method);
+  value.in_scene =
+      key == method_key ? text == of.method : text == row.own(of.scene) && (method.empty() || method == of.method);
   if (!method.empty()) value.overrides.push_back("radiosity.method=" + method);
   for (const char* with : row.with)
     value.overrides.emplace_back(with);
   value.overrides.push_back(key + "=" + text);
-  if (key == "radiosity.method" && text == "gather" && pairs > most_rays_of_pairs)
+  if (key == method_key && text == "gather" && pairs > most_rays_of_pairs)
     value.overrides.emplace_back("radiosity.sampling=mipmap");
   return value;
+}
+
+/// Those of the row and, where they are numbers, the scene's own in its place among them: a curve shows where the scene
+/// stands on it, and other settings can be foretold from there.
+std::vector<std::string> values_of(const Row& row, const KnobScene& of) {
+  std::vector<std::string> values(row.values.begin(), row.values.end());
+  const std::string own = row.own(of.scene), method = row.method;
+  const bool is_read = method.empty() || method == of.method;
+  if (!is_read || !is_number(own) || !std::all_of(values.begin(), values.end(), is_number)) return values;
+  const bool rising = std::stod(values.front()) < std::stod(values.back());
+  const auto at = std::find_if(values.begin(), values.end(), [&](const std::string& value) {
+    return rising ? std::stod(value) >= std::stod(own) : std::stod(value) <= std::stod(own);
+  });
+  if (at == values.end() || std::stod(*at) != std::stod(own)) values.insert(at, own);
+  return values;
 }
 
 Knob knob_of(const Row& row, const KnobScene& of) {
   Knob knob{name_of_key(row.key), row.key, row.falls, row.theory, {}, reason_against(row, of), row.method};
   const double pairs = 0.5 * static_cast<double>(of.points) * static_cast<double>(of.points);
+  knob.of_exchange = row.needs == Needs::exchange && knob.key != method_key;
   if (knob.left_out.empty())
-    for (const char* text : row.values)
+    for (const std::string& text : values_of(row, of))
       if (!asks_pairs(row.key, text) || pairs <= most_rays_of_pairs) knob.values.push_back(value_of(row, text, of));
   return knob;
 }
 
 } // namespace
+
+bool is_number(const std::string& value) {
+  return !value.empty() && value.find_first_not_of("0123456789.e-") == std::string::npos;
+}
 
 std::vector<Knob> knobs_of(const KnobScene& scene) {
   std::vector<Knob> knobs{quality_knob(scene.scene)};

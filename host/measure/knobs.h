@@ -10,6 +10,7 @@ struct KnobValue {
   std::string text;                   ///< "64"
   std::vector<std::string> overrides; ///< {"radiosity.method=directions", "radiosity.directions=64"}
   bool own = false;                   ///< the scene has this value already, and all that goes with it
+  bool in_scene = false;              ///< as `own`, but for a radiosity.method that "auto" has chosen
 };
 
 struct Knob {
@@ -21,6 +22,10 @@ struct Knob {
   std::string left_out = {};     ///< why the scene does not need it; empty: it does
   std::string method = {};       ///< radiosity.method that alone reads it; empty: any
   bool is_of_several_keys = false;
+  bool of_exchange = false; ///< read only where light is exchanged between surfaces: not by radiosity.method "none"
+
+  /// Whether other kernels have to be built for its values.
+  bool is_of_program() const { return key.rfind("traversal.", 0) == 0 || key.rfind("octree.", 0) == 0; }
 };
 
 /// A scene as far as the choice of knobs depends on it.
@@ -32,6 +37,9 @@ struct KnobScene {
 
 /// All knobs, in the order in which they are asked, each with its reason where the scene does not need it.
 std::vector<Knob> knobs_of(const KnobScene& scene);
+
+/// Whether a value is a number, as "0.001".
+bool is_number(const std::string& value);
 
 /// Names and keys of all knobs, for errors and for help.
 std::vector<std::string> knob_names();

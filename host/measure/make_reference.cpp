@@ -83,13 +83,12 @@ std::pair<int, int> size_to_measure(int width, int height, double seconds_a_samp
   return {scaled(width), scaled(height)};
 }
 
-MadeReference trace_reference(PictureMaker& maker, double seconds, const std::function<double()>& elapsed,
-                              const RunControl& run) {
+MadeReference trace_reference(PictureMaker& maker, double seconds, unsigned seed,
+                              const std::function<double()>& elapsed, const RunControl& run) {
   const double begun = elapsed();
   Half halves[2];
   MadeReference made;
-  unsigned seed = 1001; // none that a measured picture has
-  double pace = 0.0;    // of a sample of both halves
+  double pace = 0.0; // of a sample of both halves
   try {
     for (int samples = 1; samples > 0;) {
       const double before = elapsed();

@@ -2,6 +2,7 @@
 #include "host/cache/binary_cache.h"
 #include "host/image/exposure.h"
 #include "host/image/png_writer.h"
+#include "host/measure/intervals.h"
 #include "host/measure/kept_errors.h"
 #include "host/measure/make_reference.h"
 #include "host/measure/search.h"
@@ -23,8 +24,8 @@ namespace fs = std::filesystem;
 /// Of the budget. What is begun is stopped before the end is later than that.
 constexpr double reference_share = 1.0 / 3.0, warm_share = 0.05, latest_end = 1.05;
 
-/// Of the first picture of each run.
-constexpr unsigned first_seed = 1;
+/// More than repetitions of a run: the reference's seeds come after theirs.
+constexpr unsigned seeds_of_runs = 1000;
 
 /// Photons that are enough to run their kernels.
 constexpr int most_to_load = 10000;
@@ -118,6 +119,8 @@ private:
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.begun).count();
   }
   double left() const { return options_.budget - elapsed(); }
+  /// Of the first picture of each run: another render.seed gives a measurement that is independent of this one.
+  unsigned first_seed() const { return maker_.first_seed(); }
   bool user_stops() const { return run_.stop && run_.stop(); }
   bool stop_now() const { return user_stops() || elapsed() > stop_at_; }
 
@@ -129,6 +132,7 @@ private:
 
   void save() {
     trade_.spent_seconds = elapsed();
+    set_time_intervals(trade_);
     keep_errors(errors_, trade_, path_of(kept_errors_name)); // before the runs that count on it
     save_(trade_);
     saved_at_ = elapsed();
@@ -201,11 +205,11 @@ private:
     trade_.width = size->first;
     trade_.height = size->second;
     if (made_.first.channels.empty()) {
-      maker_.trace(1, 1, inner_); // builds the kernels
+      maker_.trace(1, first_seed(), inner_); // builds the kernels
       const double most = std::min(reference_share * options_.budget, 0.5 * left());
       let_begin();
       made_ = trace_reference(
-          maker_, most, [this] { return elapsed(); }, inner_);
+          maker_, most, first_seed() + seeds_of_runs, [this] { return elapsed(); }, inner_);
       if (user_stops()) throw Error(ErrorKind::interrupted, "interrupted while the reference was made");
       // Runs of another reference must not be gone on with.
       for (const char* name : {trade_json_name, kept_errors_name})
@@ -220,8 +224,8 @@ private:
   std::pair<int, int> chosen_size(int width, int height) {
     const auto [columns, rows] = size_to_measure(width, height, 1e9, 1.0); // the smallest
     maker_.set_size(columns, rows);
-    maker_.trace(1, 1, inner_); // builds the kernels
-    const double pace = maker_.trace(1, 2, inner_).seconds;
+    maker_.trace(1, first_seed(), inner_); // builds the kernels
+    const double pace = maker_.trace(1, first_seed() + 1, inner_).seconds;
     return size_to_measure(width, height, pace, reference_share * options_.budget);
   }
 
@@ -251,7 +255,7 @@ private:
     if (scene.caustics.photons > most_to_load) little.push_back(fmt::format("caustics.photons={}", most_to_load));
     let_begin();
     try {
-      maker_.make(little, first_seed, inner_);
+      maker_.make(little, first_seed(), inner_);
     } catch (const Error&) { // the scene's own setting will say it
       if (user_stops()) throw;
     }
@@ -282,7 +286,7 @@ private:
         continue;
       stop_at_ = warm_until();
       try {
-        run.warm_seconds = maker_.make_warm(run.setting.overrides, first_seed, inner_).seconds;
+        run.warm_seconds = maker_.make_warm(run.setting.overrides, first_seed(), inner_).seconds;
       } catch (const Error&) {
         if (user_stops()) return false;
         return true; // the time is over
@@ -296,7 +300,21 @@ private:
   SearchWorld world() {
     return {[this](MeasuredRun& run, double most) { return measure_once(run, most); },
             [this] { return left() - warm_share * options_.budget; },
-            [this](const MeasuredRun& run) { return maker_.kept_seconds(run.setting.overrides, first_seed); }};
+            [this](const MeasuredRun& run) { return maker_.kept_seconds(run.setting.overrides, first_seed()); },
+            [this](const MeasuredRun& before, const MeasuredRun& after) { return change(before, after); }};
+  }
+
+  /// By the tiles of the pictures that have a seed in common: where both are off by the same it falls out.
+  Estimate change(const MeasuredRun& before, const MeasuredRun& after) const {
+    const std::vector<std::vector<double>>&a = errors_.at(before.name).tile_sums(),
+          &b = errors_.at(after.name).tile_sums();
+    std::vector<std::vector<double>> differences;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+      std::vector<double>& tiles = differences.emplace_back(b[i]);
+      for (std::size_t t = 0; t < tiles.size(); ++t)
+        tiles[t] -= a[i][t];
+    }
+    return ErrorOfRepeats(trade_.width, trade_.height, std::move(differences), 0.0).estimate();
   }
 
   bool measure_once(MeasuredRun& run, double most) {
@@ -306,7 +324,7 @@ private:
     else
       stop_at_ = std::min(begun + std::max(most, 0.0), latest_end * options_.budget);
     try {
-      const auto seed = first_seed + static_cast<unsigned>(run.repeats.size());
+      const auto seed = first_seed() + static_cast<unsigned>(run.repeats.size());
       MadePicture made = maker_.make(run.setting.overrides, seed, inner_);
       if (made.compiled) {
         stop_at_ = std::max(stop_at_, std::min(stop_at_ + (elapsed() - begun), latest_end * options_.budget));

@@ -6,6 +6,7 @@ namespace pointgi {
 namespace {
 
 constexpr const char* method_key = "radiosity.method";
+constexpr const char* no_method = "none"; ///< of the exchange
 constexpr const char* samples_key = "render.spp";
 
 std::string key_of(const std::string& text) {
@@ -18,10 +19,6 @@ std::string value_of(const std::string& text) {
 
 bool has(const Overrides& overrides, const std::string& text) {
   return std::find(overrides.begin(), overrides.end(), text) != overrides.end();
-}
-
-bool is_number(const std::string& text) {
-  return !text.empty() && text.find_first_not_of("0123456789.e-") == std::string::npos;
 }
 
 template <typename Which>
@@ -54,7 +51,7 @@ Overrides with_value(const Overrides& overrides, const Knob& knob, const KnobVal
   if (!value.own) result.insert(result.end(), value.overrides.begin(), value.overrides.end());
   const std::string now = method_of(result, method);
   for (const Knob& other : knobs)
-    if (!other.method.empty() && other.method != now)
+    if ((!other.method.empty() && other.method != now) || (other.of_exchange && now == no_method))
       remove_if(result, [&](const std::string& text) {
         const std::string key = key_of(text);
         return key != method_key && is_of(other, key) && !has(value.overrides, text);
@@ -66,6 +63,7 @@ Overrides with_value(const Overrides& overrides, const Knob& knob, const KnobVal
 
 bool goes_with(const Overrides& overrides, const Knob& knob, const KnobValue& value, const std::string& method) {
   if (knob.key == method_key) return true;
+  if (knob.of_exchange && method_of(overrides, method) == no_method) return false;
   const std::string asked = method_of(value.overrides, "");
   return asked.empty() || asked == method_of(overrides, method);
 }
@@ -78,7 +76,7 @@ std::optional<std::size_t> value_in(const Overrides& overrides, const Knob& knob
     const KnobValue& value = knob.values[i];
     if (says ? std::all_of(value.overrides.begin(), value.overrides.end(),
                            [&](const std::string& text) { return has(overrides, text); })
-             : value.own)
+             : value.in_scene)
       return i;
   }
   return std::nullopt;
@@ -90,6 +88,7 @@ Overrides cheapest(const std::vector<Knob>& knobs, const std::string& method) {
     if (!knob.falls || knob.values.empty() || knob.is_of_several_keys || knob.key == samples_key) continue;
     if (!is_number(knob.values.front().text)) continue; // another way, not less of the same
     if (!knob.method.empty() && knob.method != method) continue;
+    if (knob.of_exchange && method == no_method) continue;
     result = with_value(result, knob, knob.values.front(), knobs, method);
   }
   return result;
@@ -100,7 +99,9 @@ std::string name_about(const Overrides& overrides, const Overrides& start, const
   const std::string now = method_of(overrides, method);
   const auto is_of_another_method = [&](const std::string& key) {
     return key != method_key && std::any_of(knobs.begin(), knobs.end(), [&](const Knob& knob) {
-             return !knob.method.empty() && knob.method != now && is_of(knob, key);
+             const bool is_read =
+                 (knob.method.empty() || knob.method == now) && !(knob.of_exchange && now == no_method);
+             return !is_read && is_of(knob, key);
            });
   };
   const auto has_key = [&](const std::string& key) {

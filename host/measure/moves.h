@@ -10,7 +10,8 @@ using Overrides = std::vector<std::string>; ///< sorted: "radiosity.directions=6
 std::string method_of(const Overrides& overrides, const std::string& otherwise);
 
 /// The overrides with this value of the knob, whatever they had for its keys before. Where the value asks for another
-/// radiosity.method than they have (theirs is `method` where they do not say), what that one alone reads goes.
+/// radiosity.method than they have (theirs is `method` where they do not say), what that one alone reads goes; so does,
+/// where it is "none", what light between surfaces reads.
 Overrides with_value(const Overrides& overrides, const Knob& knob, const KnobValue& value,
                      const std::vector<Knob>& knobs, const std::string& method);
 

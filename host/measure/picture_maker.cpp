@@ -13,9 +13,6 @@ double seconds_since(Clock::time_point begun) {
   return std::chrono::duration<double>(Clock::now() - begun).count();
 }
 
-/// Of what is not made for a picture.
-constexpr unsigned first_seed = 1;
-
 /// Those that the octree and the surface on the device depend on.
 std::string preparing_overrides(const std::vector<std::string>& overrides) {
   std::string key;
@@ -38,15 +35,15 @@ Picture picture_of(const api::Film& film) {
 
 PictureMaker::PictureMaker(const api::Context& context, std::string file, std::vector<std::string> overrides)
     : context_(context), file_(std::move(file)), overrides_(std::move(overrides)) {
-  api::Scene::from_file(file_, overrides_);
+  first_seed_ = api::Scene::from_file(file_, overrides_).parts()->description().render.seed;
 }
 
 const Scene& PictureMaker::scene(const RunControl& run) {
-  return prepared({}, first_seed, run).parts()->scene;
+  return prepared({}, first_seed_, run).parts()->scene;
 }
 
 std::size_t PictureMaker::points(const RunControl& run) {
-  return prepared({}, first_seed, run).size();
+  return prepared({}, first_seed_, run).size();
 }
 
 void PictureMaker::set_size(int width, int height) {

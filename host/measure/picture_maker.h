@@ -24,6 +24,8 @@ public:
 
   /// The scene as its file and the overrides of all pictures have it, its view chosen where it has none; loads it.
   const Scene& scene(const RunControl& run);
+  /// The scene's render.seed, which pictures need not have.
+  unsigned first_seed() const { return first_seed_; }
   /// Seconds that scene() took to load the clouds and to build the octree, when it did.
   double prepare_seconds() const { return prepare_seconds_; }
   /// Of the octree; loads the scene.
@@ -67,6 +69,7 @@ private:
   api::Context context_;
   std::string file_;
   std::vector<std::string> overrides_;
+  unsigned first_seed_ = 1;
   std::optional<int> width_, height_;
   double prepare_seconds_ = 0.0;
   std::unique_ptr<api::Prepared> own_;   ///< as the scene's own settings prepare it

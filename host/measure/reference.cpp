@@ -1,4 +1,5 @@
 #include "host/measure/reference.h"
+#include "host/measure/intervals.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,15 +13,6 @@ double mean_of(const std::vector<double>& values) {
   for (const double value : values)
     sum += value;
   return sum / static_cast<double>(values.size());
-}
-
-/// 97.5 % quantile of Student's distribution, by Fisher's expansion (Abramowitz and Stegun 26.7.5): within 2 % from
-/// three degrees of freedom on.
-double student_quantile(double freedom) {
-  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  const double n = std::max(freedom, 2.0);
-  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
-         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
 }
 
 /// Of the pixels around `at`, up to eight; 0 of none.

@@ -1,5 +1,6 @@
 #include "host/measure/search.h"
 #include "host/measure/finding.h"
+#include "host/measure/front_gain.h"
 #include "host/measure/moves.h"
 #include "host/repeats.h"
 #include <algorithm>
@@ -43,7 +44,8 @@ public:
     const double share =
         std::max(options_.longest_share, 0.5 / static_cast<double>(std::max<std::size_t>(1, knobs_.size())));
     longest_ = std::max({share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
-    const bool whole = choose_start() && singles() && combinations() && repeats();
+    const bool whole = choose_start() && singles() && combinations(&Search::best_candidates) && repeats(true) &&
+                       combinations(&Search::near_candidates) && repeats(false);
     mark_front(trade_);
     tell_curves();
     return whole;
@@ -91,7 +93,7 @@ private:
     if (!trade_.runs[at].refused.empty() || seconds_of(trade_.runs[at]) > 0.5 * seconds_of(own())) return true;
     start_ = at;
     longest_ = std::max(options_.longest_share * world_.left(), least_limit);
-    return true;
+    return again(at); // all others are told by their differences from it
   }
 
   /// What a first measurement costs of a run that takes so long.
@@ -105,16 +107,20 @@ private:
     for (const std::size_t i : before)
       if (trade_.runs[i].refused.empty()) costs.push_back(seconds_of(trade_.runs[i]));
     if (costs.empty()) return seconds_of(start());
-    if (costs.size() == 1) return costs.back() * 2.0;
+    constexpr double usual_growth = 1.5;
+    if (costs.size() == 1) return costs.back() * usual_growth;
     return costs.back() * std::clamp(costs.back() / costs[costs.size() - 2], 1.0, fastest_growth);
   }
 
   struct Line {
     const Knob* knob;
     std::vector<std::size_t> runs;               ///< in the order of the values
+    std::vector<std::string> values;             ///< of the runs
     std::map<std::size_t, std::size_t> of_value; ///< the run of a value, by its place
     std::vector<std::string> skipped;
-    bool ended = false; ///< dearer values would not fit either
+    std::size_t next = 0; ///< the place of the value that is to be measured now
+    double cost = 0.0;    ///< of its first measurement, foretold
+    bool ended = false;   ///< dearer values would not fit either
   };
 
   MeasuredRun run_of(const Knob& knob, const KnobValue& value) const {
@@ -135,61 +141,84 @@ private:
     return run;
   }
 
-  bool single(Line& line, std::size_t place, double reserve) {
-    const KnobValue& value = line.knob->values[place];
-    const MeasuredRun run = run_of(*line.knob, value);
-    const double room = world_.left() - reserve;
-    if (!is_known(run) && (line.ended || cost_of(run, next_seconds(line.runs)) > std::min(room, longest_))) {
-      line.skipped.push_back(value.text);
-      return true;
-    }
-    const std::size_t at = place_of(run);
-    if (!once(at, std::min(world_.left(), longest_))) return false;
-    line.runs.push_back(at);
-    line.of_value[place] = at;
-    line.ended = line.ended || (!trade_.runs[at].refused.empty() && line.knob->falls);
-    return true;
-  }
-
-  bool singles() {
-    const double reserve = (1.0 - options_.singles_share) * world_.left();
-    for (const Knob& knob : knobs_)
-      lines_.push_back({&knob, {}, {}, {}});
-    std::size_t most = 0;
-    for (Line& line : lines_) {
-      most = std::max(most, line.knob->values.size());
-      if (costs_little(*line.knob))
-        for (std::size_t v = 0; v < line.knob->values.size(); ++v)
-          if (!single(line, v, reserve)) return false;
-    }
-    for (std::size_t v = 0; v < most; ++v)
-      for (Line& line : lines_)
-        if (v < line.knob->values.size() && !costs_little(*line.knob) && !single(line, v, reserve)) return false;
-    return true;
-  }
-
   bool costs_little(const Knob& knob) const {
     return world_.kept && std::all_of(knob.values.begin(), knob.values.end(), [&](const KnobValue& value) {
              return value.own || world_.kept(run_of(knob, value)) > 0.0;
            });
   }
 
-  /// How much a run is beaten by, as a factor's logarithm: the least that both of its figures must fall by until no
-  /// other run beats it. 0: it is on the front.
-  double behind(double seconds, double error) const {
-    double most = 0.0;
-    for (const MeasuredRun& other : trade_.runs)
-      if (other.refused.empty() && !other.repeats.empty())
-        most = std::max(most, std::min(std::log(seconds / seconds_of(other)), std::log(error / error_of(other))));
-    return most;
+  /// What the next value of a knob costs.
+  void foretell(Line& line) const {
+    const Knob& knob = *line.knob;
+    if (line.next >= knob.values.size()) return;
+    const MeasuredRun run = run_of(knob, knob.values[line.next]);
+    if (is_known(run))
+      line.cost = 0.0;
+    else
+      line.cost =
+          cost_of(run, line.runs.empty() && knob.is_of_several_keys ? seconds_of(own()) : next_seconds(line.runs));
   }
-  double behind(const MeasuredRun& run) const { return behind(seconds_of(run), error_of(run)); }
+
+  /// How much later than its cost says a value's turn comes: knobs that the scene's own method reads come first, those
+  /// for which other kernels have to be built come last.
+  double patience(const Knob& knob) const {
+    if (knob.is_of_program()) return 4.0;
+    const bool is_read = knob.method.empty() || knob.method == own().setting.method;
+    return is_read && !knob.is_of_several_keys ? 1.0 : 1.5;
+  }
+
+  bool single(Line& line, double reserve) {
+    const std::size_t place = line.next++;
+    const KnobValue& value = line.knob->values[place];
+    const MeasuredRun run = run_of(*line.knob, value);
+    if (!is_known(run) && (line.ended || line.cost > std::min(world_.left() - reserve, longest_))) {
+      line.skipped.push_back(value.text);
+      return true;
+    }
+    const std::size_t at = place_of(run);
+    if (!once(at, std::min(world_.left(), longest_))) return false;
+    line.runs.push_back(at);
+    line.values.push_back(value.text);
+    line.of_value[place] = at;
+    line.ended = line.ended || (!trade_.runs[at].refused.empty() && line.knob->falls);
+    return true;
+  }
+
+  /// Of all knobs the cheapest of their next values, until none fits.
+  bool singles() {
+    const double reserve = (1.0 - options_.singles_share) * world_.left();
+    for (const Knob& knob : knobs_) {
+      Line line{&knob, {}, {}, {}, {}};
+      foretell(line);
+      lines_.push_back(std::move(line));
+    }
+    for (;;) {
+      Line* next = nullptr;
+      for (Line& line : lines_)
+        if (line.next < line.knob->values.size() &&
+            (next == nullptr || patience(*line.knob) * line.cost < patience(*next->knob) * next->cost))
+          next = &line;
+      if (next == nullptr) return true;
+      if (!single(*next, reserve)) return false;
+      foretell(*next);
+    }
+  }
+
+  static TradePoint point_of(const MeasuredRun& run) { return {seconds_of(run), error_of(run)}; }
+
+  std::vector<TradePoint> points() const {
+    std::vector<TradePoint> all;
+    for (const MeasuredRun& run : trade_.runs)
+      if (run.refused.empty() && !run.repeats.empty()) all.push_back(point_of(run));
+    return all;
+  }
+
+  double behind_of(const MeasuredRun& run) const { return behind(point_of(run), points()); }
 
   struct Candidate {
     MeasuredRun run;
-    double seconds = 0.0, error = 0.0; ///< foretold
-    double cost = 0.0;                 ///< of a first measurement; asked once, as a scene may be read for it
-    double rank = 0.0;
+    TradePoint foretold;
+    double cost = 0.0; ///< of a first measurement; asked once, as a scene may be read for it
   };
 
   /// What the run of a value showed, against that of the value that a setting has; absent: not measured.
@@ -212,41 +241,88 @@ private:
     candidate.run.name =
         name_about(candidate.run.setting.overrides, start().setting.overrides, start().name, knobs_, method);
     constexpr double least_left = 0.3; // of a sum that would be less
-    candidate.seconds =
-        std::max(seconds_of(from) + seconds_of(*after) - seconds_of(*before), least_left * seconds_of(from));
-    candidate.error = std::max(error_of(from) + error_of(*after) - error_of(*before), least_left * error_of(from));
-    candidate.rank = behind(candidate.seconds, candidate.error);
+    const double of_from = error_of(from), of_after = error_of(*after), of_before = error_of(*before);
+    // What a cheaper value adds it adds to any setting. What a dearer one takes away may be little in one that has
+    // less.
+    const double error = of_after > of_before
+                             ? of_from + of_after - of_before
+                             : std::max(of_from + of_after - of_before, of_from * of_after / of_before);
+    candidate.foretold = {
+        std::max(seconds_of(from) + seconds_of(*after) - seconds_of(*before), least_left * seconds_of(from)), error};
     return candidate;
   }
 
-  std::vector<Candidate> candidates() const {
-    // Logarithms: a quarter slower and less accurate than the front; twice so, by what is foretold.
-    constexpr double near = 0.25, hopeless = 0.7;
+  /// The settings a knob away from those on and near the front that have not been measured, of a cost of `most` or
+  /// less.
+  std::vector<Candidate> neighbours(double most) const {
+    constexpr double near = 0.25; // of a logarithm
     std::set<Overrides> known;
     for (const MeasuredRun& run : trade_.runs)
       known.insert(run.setting.overrides);
+    const std::vector<TradePoint> measured = points();
     std::vector<Candidate> all;
     for (const MeasuredRun& from : trade_.runs) {
-      if (!from.refused.empty() || behind(from) > near) continue;
+      if (!from.refused.empty() || behind(point_of(from), measured) > near) continue;
       for (const Line& line : lines_)
         for (std::size_t v = 0; v < line.knob->values.size() && !line.knob->is_of_several_keys; ++v)
           if (auto candidate = moved(from, line, v);
-              candidate && candidate->rank <= hopeless && known.insert(candidate->run.setting.overrides).second) {
-            candidate->cost = cost_of(candidate->run, candidate->seconds);
-            all.push_back(*candidate);
+              candidate && known.insert(candidate->run.setting.overrides).second) {
+            candidate->cost = cost_of(candidate->run, candidate->foretold.seconds);
+            if (candidate->cost <= most) all.push_back(std::move(*candidate));
           }
     }
-    std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-      return a.rank != b.rank ? a.rank < b.rank : a.cost < b.cost;
-    });
-    if (all.size() > options_.candidates) all.resize(options_.candidates);
     return all;
+  }
+
+  /// One after the other that which is foretold to gain most area of the trade a second that it costs, the ones before
+  /// it being taken to come out as foretold; what is ahead by less than times scatter gains nothing.
+  std::vector<Candidate> best_candidates(double most) const {
+    std::vector<Candidate> all = neighbours(most), chosen;
+    std::vector<TradePoint> measured = points();
+    TradePoint worst{0.0, 0.0};
+    for (const TradePoint& point : measured)
+      worst = {std::max(worst.seconds, point.seconds), std::max(worst.error, point.error)};
+    for (const Candidate& candidate : all)
+      worst.seconds = std::max(worst.seconds, 2.0 * candidate.foretold.seconds);
+    const double scatter = std::log1p(options_.steady);
+    while (chosen.size() < options_.candidates) {
+      const Candidate* best = nullptr;
+      double most_gained = 0.0;
+      for (const Candidate& candidate : all) {
+        if (behind(candidate.foretold, measured) > -scatter) continue;
+        const double gained = area_gained(candidate.foretold, measured, worst) / std::max(candidate.cost, 1e-6);
+        if (gained > most_gained) best = &candidate, most_gained = gained;
+      }
+      if (best == nullptr) break;
+      measured.push_back(best->foretold);
+      chosen.push_back(*best);
+    }
+    return chosen;
+  }
+
+  /// Those nearest to the front: what is foretold may be off by some.
+  std::vector<Candidate> near_candidates(double most) const {
+    constexpr double hopeless = 0.7; // twice as slow and as far off as the front
+    const std::vector<TradePoint> measured = points();
+    std::vector<std::pair<double, Candidate>> ranked;
+    for (Candidate& candidate : neighbours(most))
+      if (const double rank = std::max(0.0, behind(candidate.foretold, measured)); rank <= hopeless)
+        ranked.emplace_back(rank, std::move(candidate));
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first < b.first : a.second.cost < b.second.cost;
+    });
+    if (ranked.size() > options_.candidates) ranked.resize(options_.candidates);
+    std::vector<Candidate> chosen;
+    for (auto& [rank, candidate] : ranked)
+      chosen.push_back(std::move(candidate));
+    return chosen;
   }
 
   /// The better half of the runs at these places.
   std::vector<std::size_t> better_half(std::vector<std::size_t> places) const {
-    std::stable_sort(places.begin(), places.end(),
-                     [&](std::size_t a, std::size_t b) { return behind(trade_.runs[a]) < behind(trade_.runs[b]); });
+    std::stable_sort(places.begin(), places.end(), [&](std::size_t a, std::size_t b) {
+      return behind_of(trade_.runs[a]) < behind_of(trade_.runs[b]);
+    });
     places.resize((places.size() + 1) / 2);
     return places;
   }
@@ -257,36 +333,55 @@ private:
     return world_.measure(run, world_.left());
   }
 
-  bool combinations() {
-    constexpr double for_repeats = 0.3; // of the budget left now
-    const double reserve = for_repeats * world_.left();
+  /// Seconds that a second run of the scene's own setting and of those of the front takes.
+  double seconds_of_second_runs() {
+    double seconds = 0.0;
+    mark_front(trade_);
+    for (const MeasuredRun& run : trade_.runs)
+      if ((run.on_front || &run == &own()) && run.repeats.size() < 2) seconds += seconds_of(run);
+    return seconds;
+  }
+
+  bool combinations(std::vector<Candidate> (Search::*candidates)(double) const) {
+    constexpr double most_for_repeats = 0.5, little = 0.25;
+    // All are compared with the scene's own.
+    if (seconds_of(own()) < little * world_.left() && !again(0)) return false;
+    const double most_reserved = most_for_repeats * world_.left();
     for (;;) {
+      const double reserve = std::min(most_reserved, seconds_of_second_runs());
       std::vector<std::size_t> places;
       const std::size_t before = trade_.runs.size();
-      for (const Candidate& candidate : candidates()) {
-        if (candidate.cost > std::min(world_.left() - reserve, longest_)) continue;
+      for (const Candidate& candidate : (this->*candidates)(world_.left() - reserve)) {
+        constexpr double off = 1.5; // it may take longer than foretold
+        const double most = world_.left() - reserve;
+        if (candidate.cost > most) continue;
         const std::size_t at = place_of(candidate.run);
-        if (!once(at, std::min(world_.left(), longest_))) return false;
+        if (!once(at, std::min(std::max(most, 0.0), std::max(longest_, off * candidate.cost)))) return false;
         if (trade_.runs[at].refused.empty()) places.push_back(at);
       }
       if (places.empty() || trade_.runs.size() == before) return true;
       for (unsigned repeat = 1; repeat < options_.repeats; ++repeat) {
         places = better_half(places);
         for (const std::size_t at : places)
-          if (world_.left() > reserve && !again(at)) return false;
+          if (behind_of(trade_.runs[at]) <= 0.0 && seconds_of(trade_.runs[at]) < world_.left() - reserve && !again(at))
+            return false;
       }
     }
   }
 
-  bool repeats() {
-    for (const bool front_only : {true, false})
-      for (unsigned repeat = 1; repeat < options_.repeats; ++repeat) {
-        const std::vector<std::size_t> front = mark_front(trade_);
-        for (std::size_t at = 0; at < trade_.runs.size(); ++at) {
-          if (front_only && at > 0 && std::find(front.begin(), front.end(), at) == front.end()) continue;
-          if (!again(at)) return false;
-        }
-      }
+  /// Once more each, where their times are not steady.
+  bool repeat(bool front_only) {
+    const std::vector<std::size_t> front = mark_front(trade_);
+    for (std::size_t at = 0; at < trade_.runs.size(); ++at) {
+      if (front_only && at > 0 && std::find(front.begin(), front.end(), at) == front.end()) continue;
+      if (!again(at)) return false;
+    }
+    return true;
+  }
+
+  bool repeats(bool front_only) {
+    for (unsigned repeated = 1; repeated < options_.repeats; ++repeated)
+      if (!repeat(front_only)) return false;
     return true;
   }
 
@@ -297,7 +392,8 @@ private:
       if (start_ != 0 && line.knob->left_out.empty() && !line.knob->is_of_several_keys) curve.about = start().name;
       for (const std::size_t at : line.runs)
         curve.runs.push_back(trade_.runs[at].name);
-      curve.finding = finding_of(trade_, *line.knob, curve, line.skipped);
+      curve.values = line.values;
+      curve.finding = finding_of(trade_, *line.knob, curve, line.skipped, world_.change);
       trade_.knobs.push_back(curve);
     }
   }
@@ -319,7 +415,9 @@ bool search(Trade& trade, const std::vector<Knob>& knobs, const SearchWorld& wor
 
 bool is_settled(const MeasuredRun& run, const SearchOptions& options) {
   if (!run.refused.empty() || run.repeats.size() >= options.repeats) return true;
-  return run.repeats.size() > 1 && run.seconds.high - run.seconds.low < 2.0 * options.steady * run.seconds.value;
+  if (run.repeats.size() < 2) return false;
+  const auto [least, most] = std::minmax_element(run.repeats.begin(), run.repeats.end());
+  return *most - *least < 2.0 * options.steady * median_of_repeats(run.repeats);
 }
 
 Estimate estimate_of_repeats(const std::vector<double>& seconds) {

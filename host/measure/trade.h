@@ -30,7 +30,7 @@ struct MeasuredRun {
   int samples = 1;                      ///< a pixel
   std::vector<double> repeats;          ///< seconds of each repetition, from the prepared cloud to the picture, cold:
                                         ///< with a visibility map made anew
-  Estimate seconds;                     ///< median of `repeats`, the least and the greatest of them
+  Estimate seconds;                     ///< median of `repeats`; see set_time_intervals (host/measure/intervals.h)
   std::map<std::string, double> stages; ///< seconds of each stage, of the median repetition
   std::uint64_t memory_bytes = 0;       ///< device_peak_bytes of the run
   Estimate error;                       ///< relMSE against the reference, whose own noise is taken off; low may be < 0
@@ -51,6 +51,7 @@ struct KnobCurve {
   bool falls = false;            ///< theory says that the error falls along them
   std::string finding;           ///< "falls", or where it does not and why, for the reader; without runs, why not
   std::string about = {};        ///< the run whose other settings they have; empty: the scene's own
+  std::vector<std::string> values = {}; ///< of the knob, of each run: "64"
 };
 
 struct TradeReference {

@@ -47,11 +47,8 @@ json object_of(const MeasuredRun& run) {
 }
 
 json object_of(const KnobCurve& knob) {
-  return {{"knob", knob.knob},
-          {"runs", knob.runs},
-          {"falls", knob.falls},
-          {"finding", knob.finding},
-          {"about", knob.about}};
+  return {{"knob", knob.knob},       {"runs", knob.runs},   {"falls", knob.falls},
+          {"finding", knob.finding}, {"about", knob.about}, {"values", knob.values}};
 }
 
 /// A place in the file that is read, by which errors name it: "runs.3.error".
@@ -146,7 +143,8 @@ MeasuredRun run_of(const Reader& in) {
 }
 
 KnobCurve knob_of(const Reader& in) {
-  return {in["knob"].text(), in["runs"].texts(), in["falls"].flag(), in["finding"].text(), in["about"].text()};
+  return {in["knob"].text(),    in["runs"].texts(), in["falls"].flag(),
+          in["finding"].text(), in["about"].text(), in["values"].texts()};
 }
 
 Trade trade_of(const Reader& in) {

@@ -49,9 +49,13 @@ inline Trade small_trade() {
   refused.refused = "more memory than the device has, \"far\" more";
   refused.picture.clear();
   trade.runs.push_back(refused);
-  trade.knobs = {
-      {"radiosity.directions", {"directions-1", "directions-64", "directions-512", "directions-4096"}, true, "falls"},
-      {"caustics.photons", {}, true, "no specular surface"}};
+  trade.knobs = {{"radiosity.directions",
+                  {"directions-1", "directions-64", "directions-512", "directions-4096"},
+                  true,
+                  "falls",
+                  "",
+                  {"1", "64", "512", "4096"}},
+                 {"caustics.photons", {}, true, "no specular surface"}};
   mark_front(trade);
   return trade;
 }

@@ -28,12 +28,12 @@ function findingText(curve) {
 function knobChart(curve, width) {
   const all = curve.runs.map(runNamed).filter(Boolean), done = all.filter(run => !run.refused);
   if (done.length === 0) return "<p>Every value was refused; the reasons stand in the table of all runs.</p>";
-  const value = run => run.setting.value || run.name;
+  const value = run => curve.values[curve.runs.indexOf(run.name)] || run.name;
   const step = (width - 62) / all.length, left = 50;
   const widest = Math.max(...all.map(run => value(run).length)) * 6.6;
   const slanted = widest > step - 4, foot = slanted ? 14 + widest * 0.64 : 18;
   const x = i => left + step * (i + 0.5);
-  const numbers = all.every(run => isFinite(Number(run.setting.value))); // the scene’s own has no text;
+  const numbers = curve.values.every(text => isFinite(Number(text)));
   const high = 105, gap = 20;
   let out = "";
   const panel = (top, title, domain, estimate) => {

@@ -14,7 +14,7 @@ function drawHead() {
   ];
   byId("facts").innerHTML = facts.map(([title, words]) => `<div><dt>${title}</dt><dd>${esc(words)}</dd></div>`).join("");
   const terms = [
-    ["seconds", "From the prepared cloud to the picture, by a process that has its kernels: the median of the repetitions, below it the least and the greatest. " +
+    ["seconds", "From the prepared cloud to the picture, by a process that has its kernels: the median of the repetitions, below it the interval that holds it in 95 of 100 measurements. " +
       "The stage render grows with the pixels of the picture; the others do not depend on them."],
     ["error (relMSE)", "As pointgi compare prints it: the mean over the pixels of the squared difference from the reference, relative to the squared reference. A quarter " +
       "of the error is half the difference. The noise of the reference is taken off, so that an interval may reach below 0: the reference cannot tell such an error from none. " +

@@ -71,6 +71,28 @@ TEST_CASE("the scene's own value is known") {
   CHECK(own("directions").empty()); // another method's
 }
 
+TEST_CASE("the scene's own value stands among the others, in its place") {
+  const test::SceneFolder folder;
+  const auto values = [&](const char* name, const std::vector<std::string>& overrides) {
+    const Scene scene = folder.load(mirror_scene, overrides);
+    const std::vector<Knob> knobs = knobs_of({scene, "gather", 1000}); // as "auto" might have chosen
+    std::string text;
+    for (const KnobValue& value : named(knobs, name).values)
+      text += value.text + (value.own ? "! " : value.in_scene ? "? " : " ");
+    return text;
+  };
+  CHECK(values("spp", {"render.spp=20"}) == "2 8 20! 32 128 ");
+  CHECK(values("spp", {"render.spp=32"}) == "2 8 32! 128 ");
+  CHECK(values("photons", {"caustics.photons=5000000"}) == "25000 100000 400000 1600000 5000000! ");
+  CHECK(values("tolerance", {"radiosity.tolerance=0.05"}) == "0.1 0.05! 0.01 0.001 0.0001 "); // falls
+  CHECK(values("directions", {"radiosity.directions=100"}) == "32 128 512 2048 ");            // is not read
+  // "auto" takes time to choose: the same light is another setting.
+  const std::vector<std::string> automatic{"radiosity.method=auto", "radiosity.sampling=mipmap",
+                                           "radiosity.window=100"};
+  CHECK(values("method", automatic) == "none cones fmm directions gather? ");
+  CHECK(values("window", automatic) == "1024 256 100? 64 ");
+}
+
 TEST_CASE("knobs that a scene does not need are left out with a reason") {
   const test::SceneFolder folder;
   const Scene plain = folder.load(test::small_scene);

@@ -8,7 +8,7 @@ namespace {
 
 /// As host/measure/knobs.cpp makes them of a scene with 512 directions whose method is "auto".
 std::vector<Knob> knobs() {
-  Knob spp{"spp", "render.spp", true, "", {{"2", {"render.spp=2"}}, {"32", {"render.spp=32"}, true}}};
+  Knob spp{"spp", "render.spp", true, "", {{"2", {"render.spp=2"}}, {"32", {"render.spp=32"}, true, true}}};
   Knob method{"method", "radiosity.method", false, "", {}};
   for (const char* text : {"none", "fmm", "directions"})
     method.values.push_back({text, {std::string("radiosity.method=") + text}});
@@ -21,7 +21,7 @@ std::vector<Knob> knobs() {
                "caustics.photons",
                true,
                "",
-               {{"1000", {"caustics.photons=1000"}}, {"9000", {"caustics.photons=9000"}, true}}};
+               {{"1000", {"caustics.photons=1000"}}, {"9000", {"caustics.photons=9000"}, true, true}}};
   return {spp, method, directions, epsilon, photons};
 }
 

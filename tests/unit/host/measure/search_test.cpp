@@ -48,9 +48,9 @@ struct Model {
 std::vector<Knob> knobs() {
   Knob spp{"spp", "a.spp", true, "Noise falls.", {}}, rays{"rays", "b.rays", true, "Noise falls.", {}};
   for (const int n : {2, 8, 32, 128})
-    spp.values.push_back({std::to_string(n), {"a.spp=" + std::to_string(n)}, n == 32});
+    spp.values.push_back({std::to_string(n), {"a.spp=" + std::to_string(n)}, n == 32, n == 32});
   for (const int n : {32, 128, 512, 2048})
-    rays.values.push_back({std::to_string(n), {"b.rays=" + std::to_string(n)}, n == 512});
+    rays.values.push_back({std::to_string(n), {"b.rays=" + std::to_string(n)}, n == 512, n == 512});
   return {spp, rays};
 }
 
@@ -152,8 +152,15 @@ TEST_CASE("a curve that rises is told, against theory or not") {
     trade.runs.push_back(run);
   }
   Knob knob{"k", "a.k", true, "It falls.", {}};
-  const KnobCurve curve{"k", {"k-0", "k-1", "k-2"}, true, {}};
-  CHECK(finding_of(trade, knob, curve, {}) == "the error rises from k-1 to k-2, against theory. It falls.");
+  const KnobCurve curve{"k", {"k-0", "k-1", "k-2"}, true, {}, "", {"0", "10", "20"}};
+  CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Matches("the error rises from 10 to 20 \\(.*says why\\), "
+                                                                "against theory. It falls."));
+  trade.runs[1].noise = 0.1;
+  trade.runs[2].noise = 0.3;
+  CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("noisier"));
+  trade.runs[1].bias = -0.001;
+  trade.runs[2].bias = 0.5;
+  CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("is off by +50 % and was by -0.1 %"));
   trade.runs[2].error = {0.5, 0.4, 0.6};
   CHECK(finding_of(trade, knob, curve, {"9"}) == "falls; not measured, the budget being too small: 9");
   trade.runs[0].error = trade.runs[1].error;
