@@ -7,8 +7,8 @@
 #include "host/stages/device_need.h"
 #include "host/stages/exchange_sample.h"
 #include "host/stages/require_memory.h"
+#include "octree/clock.h"
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace pointgi::api {
@@ -34,12 +34,6 @@ const StageEstimate* PictureEstimate::stage(const std::string& name) const {
 }
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// Flights that tell what a photon costs; a picture that tells what a pixel does, in parts of a side.
 constexpr long long first_photons = 2000, few_photons = 40000;
@@ -264,9 +258,8 @@ private:
     const std::size_t channels = whole.channels().size();
     // Launches are as long as those of the small picture would have grown to be.
     const double a_pixel = std::max(totals.eye_seconds, totals.device_seconds - totals.eye_seconds) / drawn;
-    const std::size_t film_channels = light_.light.photons        ? FILM_CHANNELS_CAUSTIC
-                                      : light_.light.normal_field ? FILM_CHANNELS_SPECULAR
-                                                                  : FILM_CHANNELS;
+    const std::size_t film_channels =
+        film_scalars(light_.light.normal_field.has_value(), light_.light.photons.has_value());
     const double columns = std::clamp(launch_seconds / std::max(1e-9, band_rows * a_pixel), 16.0,
                                       std::min(4096.0, std::max(16.0, double(window.x1 - window.x0))));
     StageEstimate& render = add(

@@ -26,7 +26,7 @@ std::string settings_text(const std::vector<std::string>& overrides) {
   return text.empty() ? "the scene's own settings" : text;
 }
 
-ChosenSetting chosen_of(const PictureChoice& choice, double pixels, double factor, const RenderOptions& options) {
+ChosenSetting chosen_of(const PictureChoice& choice, double pixels, const RenderOptions& options) {
   ChosenSetting chosen;
   chosen.overrides = choice.light.overrides;
   chosen.seconds = choice.seconds;
@@ -36,7 +36,7 @@ ChosenSetting chosen_of(const PictureChoice& choice, double pixels, double facto
   goal.until = options.seconds;
   goal.error = options.error;
   goal.light_error = std::max(0.0, choice.light.light_error.value);
-  goal.noise_factor = factor;
+  goal.noise = choice.light.noise;
   goal.seconds_a_sample = choice.light.seconds_a_sample * pixels;
   goal.noise_a_sample = choice.light.noise_a_sample;
   return chosen;
@@ -120,10 +120,12 @@ std::optional<ChosenSetting> choose_by_trade(const Trade& trade, const RenderOpt
                                               : least([](const LightChoice& l) { return l.light_error.high; });
     const double allowed = options.error ? std::max(0.25 * *options.error, 1e-9) : 1.0;
     const int samples =
-        options.seconds ? 1 : static_cast<int>(std::clamp(light.noise_a_sample / allowed, 1.0, 65536.0));
+        options.seconds
+            ? 1
+            : static_cast<int>(std::clamp(light.noise.samples(light.noise_a_sample, allowed), 1.0, 65536.0));
     choice = PictureChoice{light, samples, seconds_of(light, pixels, samples), error_of(light, samples)};
   }
-  ChosenSetting chosen = chosen_of(*choice, pixels, noise_factor(trade), options);
+  ChosenSetting chosen = chosen_of(*choice, pixels, options);
   chosen.told = fmt::format("chosen by what was measured of it on {}: {}; expected: {}, relMSE {:.2g}{}", trade.date,
                             settings_text(chosen.overrides), duration_text(chosen.seconds), chosen.error, doubt);
   return chosen;

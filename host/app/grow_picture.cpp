@@ -25,9 +25,9 @@ double needed_samples(const PictureGoal& goal, int now, double noise) {
   // Where the light alone has more error than that, noise need not be small beside what was asked for.
   constexpr double share_of_noise = 0.25;
   const double allowed = std::max(*goal.error - goal.light_error, share_of_noise * *goal.error);
-  const double of_one = now == 0 ? goal.noise_a_sample : goal.noise_factor * noise * now;
+  const double of_one = now == 0 ? goal.noise_a_sample : noise * now;
   if (!std::isfinite(of_one)) return 2.0 * now;
-  return std::ceil(of_one / allowed);
+  return std::ceil(goal.noise.samples(of_one, allowed));
 }
 
 } // namespace
@@ -52,22 +52,27 @@ int next_samples(const PictureGoal& goal, int now, double left, double noise) {
   return static_cast<int>(affordable); // the last pass
 }
 
-double relative_noise(const GrowingFilm& film) {
-  // The channels' order is that of film_channels(): R, G, B are the first, the variances follow Z.
-  constexpr std::size_t first_variance = 17;
+double relative_noise(const GrowingFilm& film, const std::vector<ChannelName>& channels) {
+  const auto place_of = [&](const std::string& name) {
+    const auto at = std::find_if(channels.begin(), channels.end(), [&](const auto& c) { return c.name == name; });
+    return static_cast<std::size_t>(at - channels.begin());
+  };
+  const std::pair<std::size_t, std::size_t> values_and_variances[] = {{place_of("R"), place_of("Variance.R")},
+                                                                      {place_of("G"), place_of("Variance.G")},
+                                                                      {place_of("B"), place_of("Variance.B")}};
   constexpr double part_of_mean = 0.01; // as relMSE has it (host/image/difference.h)
   double sum = 0.0, values = 0.0;
   film.resolve([&](const Band& band) {
-    for (std::size_t k = 0; k < 3; ++k)
-      for (const float value : band.values[k])
+    for (const auto& [colour, variance] : values_and_variances)
+      for (const float value : band.values[colour])
         sum += value, values += 1.0;
   });
   const double mean = sum / std::max(1.0, values), eps = mean > 0.0 ? part_of_mean * mean * mean : part_of_mean;
   double noise = 0.0;
   film.resolve([&](const Band& band) {
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t i = 0; i < band.values[k].size(); ++i)
-        noise += band.values[first_variance + k][i] / (double{band.values[k][i]} * band.values[k][i] + eps);
+    for (const auto& [colour, variance] : values_and_variances)
+      for (std::size_t i = 0; i < band.values[colour].size(); ++i)
+        noise += band.values[variance][i] / (double{band.values[colour][i]} * band.values[colour][i] + eps);
   });
   return noise / std::max(1.0, values);
 }
@@ -89,7 +94,7 @@ public:
       const int next = next_samples(goal_, now, left(), noise);
       if (next <= now || !grow(now, next)) break; // enough, interrupted, or the time is over
       now = next;
-      if (goal_.error) noise = relative_noise(*film_);
+      if (goal_.error) noise = relative_noise(*film_, job_.channels());
       if (worth_writing(next)) write();
     }
     const RenderTotals totals = film_->resolve([](const Band&) {});
@@ -145,7 +150,7 @@ private:
     grown.totals = totals;
     grown.totals.interrupted = stop_asked();
     grown.samples = static_cast<int>(film_->samples());
-    grown.noise = relative_noise(*film_);
+    grown.noise = relative_noise(*film_, job_.channels());
     if (grown.samples == 0) return grown;
     const RunControl to_the_end{}; // what is there is kept
     const RunScope scope(to_the_end);

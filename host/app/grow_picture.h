@@ -1,6 +1,7 @@
 #pragma once
 /// Pictures that get better until they are good enough or the time is over; each of them is a whole file.
 #include "host/app/picture_output.h"
+#include "host/measure/noise_model.h"
 
 namespace pointgi {
 
@@ -11,9 +12,9 @@ struct PictureGoal {
   std::optional<double> error;   ///< relMSE
   double light_error = 0.0;      ///< relMSE that more samples leave
   bool light_error_known = true; ///< else only the noise is told
-  double noise_factor = 1.0;     ///< of the noise that the pixels' variances tell (host/measure/forecast.h)
+  NoiseModel noise;              ///< what the pixels' variances mean
   double seconds_a_sample = 0.0; ///< of all pixels, as far as it is known; 0: it is not
-  double noise_a_sample = 0.0;   ///< relMSE of one sample a pixel, as far as it is known; 0: it is not
+  double noise_a_sample = 0.0;   ///< relMSE of one sample a pixel as variances tell it, as far as known; 0: it is not
 
   bool is_open() const { return until.has_value() || error.has_value(); }
 };
@@ -31,7 +32,7 @@ GrownPicture grow_picture(api::Context::Parts& context, api::FilmJob& job, const
                           PictureOutput& output);
 
 /// relMSE of the picture against its own mean by its pixels' variances.
-double relative_noise(const GrowingFilm& film);
+double relative_noise(const GrowingFilm& film, const std::vector<ChannelName>& channels);
 
 /// Samples that a pixel should have next, of `now`: of a goal that is open the least of what its time allows (0: no
 /// more) and of what its error needs, in steps of at most as many as there are; whole passes, but for the last. `left`:

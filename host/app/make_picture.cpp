@@ -1,10 +1,11 @@
 #include "host/app/make_picture.h"
-#include "host/app/preview.h"
+#include "host/available_memory.h"
 #include "host/cl/resource_error.h"
-#include "host/free_memory.h"
+#include "host/render/tile_renderer.h"
 #include "host/run.h"
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <spdlog/spdlog.h>
 
 namespace pointgi {
@@ -22,25 +23,33 @@ std::string told_of(const GrownPicture& grown, const PictureGoal& goal) {
   if (!goal.is_open()) return {};
   std::string text = fmt::format("{} samples a pixel", grown.samples);
   if (!std::isfinite(grown.noise)) return text;
-  const double noise = goal.noise_factor * grown.noise, all = goal.light_error + noise;
+  const double noise = goal.noise.noise(grown.noise * grown.samples, grown.samples), all = goal.light_error + noise;
   text += goal.light_error_known ? fmt::format(", relMSE about {:.2g}, of which {:.2g} is noise", all, noise)
                                  : fmt::format(", relMSE of the noise about {:.2g}", noise);
   if (goal.error && all > *goal.error) text += fmt::format("; {:.3g} was not reached", *goal.error);
   return text;
 }
 
+std::uint64_t film_bytes(const api::Prepared& prepared, double pixels) {
+  const bool specular = prepared.parts()->ready.lighting.has_specular();
+  const bool photons = specular && prepared.parts()->scene.caustics.photons > 0;
+  return static_cast<std::uint64_t>(pixels * static_cast<double>(film_scalars(specular, photons) * sizeof(float)));
+}
+
 /// Before an older picture is replaced by a preview of one that cannot be made.
-void require_film_memory(double pixels) {
-  const auto wanted = static_cast<std::uint64_t>(pixels * FILM_CHANNELS_CAUSTIC * sizeof(float));
-  const std::optional<std::uint64_t> left = free_memory();
-  if (left && wanted > *left)
-    throw Error(ErrorKind::memory,
-                fmt::format("a picture that gets better keeps a film of {} in memory, of which {} are free; leave out "
-                            "--time, --error and --progressive, or set a smaller --size",
-                            megabytes(wanted), megabytes(*left)));
+void require_film_memory(const PictureRun& run) {
+  if (film_fits(run.prepared, run.pixels)) return;
+  throw Error(ErrorKind::memory,
+              fmt::format("a picture that gets better keeps a film of {} in memory, of which {} are available; leave "
+                          "out --time, --error and --progressive, or set a smaller --size",
+                          megabytes(film_bytes(run.prepared, run.pixels)), megabytes(available_memory().value_or(0))));
 }
 
 } // namespace
+
+bool film_fits(const api::Prepared& prepared, double pixels) {
+  return film_bytes(prepared, pixels) <= available_memory().value_or(std::numeric_limits<std::uint64_t>::max());
+}
 
 MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output) {
   api::Context::Parts& context = *run.context.parts();
@@ -66,8 +75,7 @@ MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& outp
   return made;
 }
 
-MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
-                                      const std::function<PictureGoal(const PictureGoal&)>& choose,
+MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, const BeforeLight& before_light,
                                       PictureOutput& output) {
   MadePictureFiles made;
   const StageLog& stages = run.context.parts()->stages;
@@ -75,14 +83,15 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
   RunControl in_time = run.control;
   in_time.stop = [&] { return user_stops() || (goal.until && stages.seconds() > *goal.until); };
   try {
-    require_film_memory(run.pixels);
+    require_film_memory(run);
     api::require_memory(run.prepared, {true, run.by_paths}); // or an older picture would be lost to a first one
+    PreviewCost cost;
     if (!run.by_paths) {
       const double seconds = goal.until ? share_of_preview * *goal.until : usual_preview;
-      const PreviewCost cost = write_preview(run.context, run.prepared, run.film, seconds, output, run.control);
+      cost = write_preview(run.context, run.prepared, run.film, seconds, output, run.control);
       if (goal.seconds_a_sample == 0.0) goal.seconds_a_sample = cost.seconds_a_sample;
     }
-    if (choose) goal = choose(goal);
+    if (before_light) before_light(goal, cost);
     made.light = light_of(run, in_time);
     api::FilmJob job(*made.light->parts(), run.film);
     const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output);

@@ -1,6 +1,7 @@
 #pragma once
 /// From a prepared scene to the files of its picture, at once or getting better.
 #include "host/app/grow_picture.h"
+#include "host/app/preview.h"
 #include <memory>
 
 namespace pointgi {
@@ -25,12 +26,16 @@ struct MadePictureFiles {
 /// leaves older files alone, and as Light, FilmJob and PictureOutput.
 MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output);
 
-/// A preview, then the picture whenever it is better (host/app/grow_picture.h). `choose`, if given, may change the goal
-/// and the settings of the prepared scene's light after the preview. Throws Error(interrupted) when that comes before
-/// the preview, Error(memory) where its film does not fit beside what the machine holds, and as Light, FilmJob and
-/// PictureOutput.
-MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal,
-                                      const std::function<PictureGoal(const PictureGoal&)>& choose,
+/// Is called after the preview, if given: may change the goal and the settings of the prepared scene's light.
+using BeforeLight = std::function<void(PictureGoal& goal, const PreviewCost& preview)>;
+
+/// Whether the machine can hold the film of a picture that gets better.
+bool film_fits(const api::Prepared& prepared, double pixels);
+
+/// A preview, then the picture whenever it is better (host/app/grow_picture.h). Throws Error(interrupted) when that
+/// comes before the preview, Error(memory) where its film does not fit beside what the machine holds, and as Light,
+/// FilmJob and PictureOutput.
+MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, const BeforeLight& before_light,
                                       PictureOutput& output);
 
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
+#include "host/app/numbers.h"
 #include "host/app/output_files.h"
 #include "host/app/stats.h"
 #include "host/measure/kept_errors.h"
@@ -20,16 +21,6 @@ namespace {
 /// Below this a picture has too few tiles for an interval of its error (host/measure/reference.h).
 constexpr int least_side = 32;
 
-std::pair<int, int> size_of(const std::string& text) {
-  int width = 0, height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &rest) != 2 || width < least_side ||
-      height < least_side || width > 65536 || height > 65536)
-    throw Error(ErrorKind::usage, "--size: expected WIDTHxHEIGHT of at least " + std::to_string(least_side) +
-                                      " pixels each, for example 240x180, found \"" + text + "\"");
-  return {width, height};
-}
-
 std::vector<std::string> knobs_of(const std::string& list) {
   std::vector<std::string> knobs;
   std::istringstream in(list);
@@ -47,7 +38,7 @@ MeasureOptions checked(const MeasureCommand& command) {
   options.budget = command.budget;
   options.knobs = knobs_of(command.knobs);
   options.reference_file = command.reference;
-  if (!command.size.empty()) options.size = size_of(command.size);
+  if (!command.size.empty()) options.size = size_of(command.size, least_side);
   if (command.target && !(*command.target > 0.0 && std::isfinite(*command.target)))
     throw Error(ErrorKind::usage, "--target: expected an error above 0, for example 1e-3");
   state_of(options); // reads the scene

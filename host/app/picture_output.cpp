@@ -1,5 +1,5 @@
 #include "host/app/picture_output.h"
-#include <chrono>
+#include "octree/clock.h"
 
 namespace pointgi {
 
@@ -24,11 +24,11 @@ void PictureOutput::finish(double seconds) {
 }
 
 void PictureOutput::write(const api::FilmJob& job, const GrowingFilm& film, double seconds) {
-  const auto begun = std::chrono::steady_clock::now();
+  const Clock::time_point begun = Clock::now();
   begin(job);
   film.resolve([&](const Band& band) { take(band); });
   finish(seconds);
-  seconds_to_write_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  seconds_to_write_ = seconds_since(begun);
 }
 
 } // namespace pointgi

@@ -1,6 +1,7 @@
 #include "host/app/preview.h"
 #include "host/run.h"
 #include <algorithm>
+#include <limits>
 
 namespace pointgi {
 
@@ -34,6 +35,9 @@ public:
     scene_.radiosity = own_.radiosity;
     scene_.caustics = own_.caustics;
   }
+  /// Of the light; 0 where none is asked.
+  int directions() const { return scene_.radiosity.method == "none" ? 0 : scene_.radiosity.directions; }
+  bool leaves_out_light() const { return own_.radiosity.method != scene_.radiosity.method && directions() == 0; }
   CheapSettings(const CheapSettings&) = delete;
   CheapSettings& operator=(const CheapSettings&) = delete;
 
@@ -60,7 +64,12 @@ PreviewCost write_preview(const api::Context& context, const api::Prepared& prep
     const RunScope scope(silent);
     const CheapSettings cheap(*prepared.parts(), seconds);
     const StagesApart apart(stages);
+    const double asked = stages.seconds();
     const api::Light light(prepared, {}, silent);
+    if (cheap.leaves_out_light())
+      cost.seconds_a_direction = std::numeric_limits<double>::infinity();
+    else if (cheap.directions() > 0)
+      cost.seconds_a_direction = (stages.seconds() - asked) / cheap.directions();
     api::FilmOptions few = film;
     few.spp = samples;
     api::FilmJob job(*light.parts(), few);

@@ -6,7 +6,8 @@ namespace pointgi {
 
 /// What it cost, for what comes after it.
 struct PreviewCost {
-  double seconds_a_sample = 0.0; ///< of all pixels
+  double seconds_a_sample = 0.0;    ///< of all pixels
+  double seconds_a_direction = 0.0; ///< of the light between surfaces; infinite: too long to be tried
 };
 
 /// Direct light, and light between surfaces by as few directions as fit into `seconds`; no caustics, next to no

@@ -4,6 +4,7 @@
 #include "host/app/commands.h"
 #include "host/app/light_command.h"
 #include "host/app/make_picture.h"
+#include "host/app/numbers.h"
 #include "host/app/output_files.h"
 #include "host/app/progress.h"
 #include "host/app/stats.h"
@@ -13,38 +14,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
+#include <set>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 namespace pointgi {
 
-namespace {
-
-/// Exactly `count` whole numbers separated by `separator`, or an Error(usage) that shows how it is written.
-std::vector<int> whole_numbers(const std::string& text, char separator, std::size_t count, const std::string& form) {
-  std::vector<int> numbers;
-  std::size_t at = 0;
-  while (at <= text.size()) {
-    const std::size_t end = std::min(text.find(separator, at), text.size());
-    const std::string part = text.substr(at, end - at);
-    if (part.empty() || part.size() > 9 || part.find_first_not_of("0123456789") != std::string::npos) break;
-    numbers.push_back(std::stoi(part));
-    at = end + 1;
-  }
-  if (numbers.size() != count || at <= text.size()) throw Error(ErrorKind::usage, form + ", found \"" + text + "\"");
-  return numbers;
-}
-
-} // namespace
-
 std::vector<std::string> picture_overrides_of(const RenderOptions& options) {
   std::vector<std::string> overrides = overrides_of(options);
   if (!options.size.empty()) {
-    const auto size = whole_numbers(options.size, 'x', 2, "--size: expected WIDTHxHEIGHT, for example 640x480");
-    if (size[0] < 1 || size[1] < 1)
-      throw Error(ErrorKind::usage,
-                  "--size: expected a width and height of at least 1, found \"" + options.size + "\"");
-    overrides.push_back("render.size=[" + std::to_string(size[0]) + ", " + std::to_string(size[1]) + "]");
+    const auto [width, height] = size_of(options.size, 1);
+    overrides.push_back("render.size=[" + std::to_string(width) + ", " + std::to_string(height) + "]");
   }
   if (options.spp) overrides.push_back("render.spp=" + std::to_string(*options.spp));
   return overrides;
@@ -154,31 +135,51 @@ std::optional<ChosenSetting> setting_for(const RenderOptions& options, const Sce
   return setting;
 }
 
-/// What presets reached on scenes of its kind, and how long the picture takes.
+/// What presets reached on scenes of its kind, and `seconds` that the picture takes, if that is known.
 void tell_of_kind(const RenderOptions& options, const api::Prepared& prepared, const std::string& seconds) {
   const std::string kind = kind_of_scene(prepared.parts()->scene, prepared.parts()->ready);
+  std::vector<std::string> told;
+  if (!seconds.empty()) told.push_back(seconds);
   if (const auto errors = errors_of_kind(options.quality, kind))
-    spdlog::info("expected: relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had; {}", errors->first,
-                 errors->second, kind, seconds);
-  else
-    spdlog::info("expected: {}", seconds);
+    told.push_back(fmt::format("relMSE {:.1g} to {:.1g}, as other scenes of its kind ({}) had", errors->first,
+                               errors->second, kind));
+  if (!told.empty()) spdlog::info("expected: {}", fmt::join(told, "; "));
 }
 
-/// Where somebody waits for it: a part of the work is done for the estimate.
-PictureGoal told_goal(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
-                      const PictureGoal& goal, const RunControl& run) {
+bool is_of_preparation(const std::string& stage) {
+  return stage == "scene" || stage == "cloud" || stage == "octree";
+}
+
+/// Of the picture's stages but those that have run already and these.
+double seconds_of_stages(const api::Prepared& prepared, const api::FilmOptions& film,
+                         const std::set<std::string>& besides, const RunControl& run) {
   double seconds = 0.0;
   for (const api::StageEstimate& stage : api::estimate_picture(prepared, film, run).stages)
-    if (stage.runs && stage.stage != "scene" && stage.stage != "cloud" && stage.stage != "octree")
-      seconds += stage.seconds;
-  tell_of_kind(options, prepared, duration_text(seconds) + " from here");
-  return goal;
+    if (stage.runs && !is_of_preparation(stage.stage) && besides.count(stage.stage) == 0) seconds += stage.seconds;
+  return seconds;
+}
+
+/// After the preview, to who waits for the picture.
+void tell_expected(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
+                   const PreviewCost& preview, const RunControl& run) {
+  constexpr double least_for_estimate = 5.0; // which does a part of the work, a tenth of it or less
+  const Scene& scene = prepared.parts()->scene;
+  const double seconds =
+      preview.seconds_a_sample * scene.render.spp + preview.seconds_a_direction * scene.radiosity.directions;
+  std::string text = fmt::format("less than about {} from here", duration_text(least_for_estimate));
+  if (seconds > least_for_estimate) try {
+      text = fmt::format("about {} from here", duration_text(seconds_of_stages(prepared, film, {}, run)));
+    } catch (const Error& error) { // the picture may do without what the estimate could not
+      if (error.kind() == ErrorKind::interrupted) throw;
+      text.clear();
+    }
+  tell_of_kind(options, prepared, text);
 }
 
 /// Without a measurement of the scene, by what presets reached on others of its kind: sets the light's settings of the
 /// preset that --time and --error choose.
-PictureGoal choose_of_kind(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
-                           const PictureGoal& goal, const RunControl& run) {
+void choose_of_kind(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
+                    PictureGoal& goal, const RunControl& run) {
   // A part of the light is solved for an estimate: a few seconds.
   constexpr double least_for_estimate = 15.0;
   api::Prepared::Parts& parts = *prepared.parts();
@@ -187,24 +188,22 @@ PictureGoal choose_of_kind(const RenderOptions& options, const api::Prepared& pr
   if (options.seconds && *options.seconds - parts.context->stages.seconds() < least_for_estimate)
     light_seconds = *options.seconds; // the least preset is safe
   else if (options.seconds)
-    for (const api::StageEstimate& stage : api::estimate_picture(prepared, film, run).stages)
-      if (stage.runs && stage.stage != "render" && stage.stage != "cloud" && stage.stage != "octree")
-        light_seconds += stage.seconds;
+    light_seconds = seconds_of_stages(prepared, film, {"render"}, run);
   const PresetChoice choice = choose_by_presets(kind, options, light_seconds, parts.context->stages.seconds());
   apply_preset(preset_named(choice.preset, "--quality"), parts.scene, true);
   parts.quality = choice.preset;
   spdlog::info("{}: {}", options.input, choice.setting.told);
-  PictureGoal chosen = choice.setting.goal;
-  chosen.seconds_a_sample = goal.seconds_a_sample;
-  return chosen;
+  const double seconds_a_sample = goal.seconds_a_sample;
+  goal = choice.setting.goal;
+  goal.seconds_a_sample = seconds_a_sample;
 }
 
-/// A picture of more pixels does not grow unless that is asked for: a film of 40 floats a pixel is kept.
+/// A picture of more pixels does not grow unless that is asked for: its film is kept.
 constexpr double most_growing_pixels = 1 << 23;
 
-bool grows(const RenderOptions& options, double pixels) {
+bool grows(const RenderOptions& options, const api::Prepared& prepared, double pixels) {
   if (options.progressive || has_open_goal(options)) return true;
-  return !options.quiet && isatty(STDERR_FILENO) != 0 && pixels <= most_growing_pixels;
+  return !options.quiet && isatty(STDERR_FILENO) != 0 && pixels <= most_growing_pixels && film_fits(prepared, pixels);
 }
 
 PictureGoal goal_of(const RenderOptions& options, const std::optional<ChosenSetting>& setting, int samples) {
@@ -242,11 +241,16 @@ ExitCode run_render(const RenderOptions& options) {
   }
   const api::Prepared prepared(context, scene, run.control());
   const bool of_kind = !setting && options.integrator != "path";
-  std::function<PictureGoal(const PictureGoal&)> choose;
+  const bool growing = grows(options, prepared, pixels);
+  BeforeLight before_light;
   if (of_kind && has_open_goal(options))
-    choose = [&](const PictureGoal& goal) { return choose_of_kind(options, prepared, film, goal, run.control()); };
-  else if (of_kind && grows(options, pixels) && !options.quiet)
-    choose = [&](const PictureGoal& goal) { return told_goal(options, prepared, film, goal, run.control()); };
+    before_light = [&](PictureGoal& goal, const PreviewCost&) {
+      choose_of_kind(options, prepared, film, goal, run.control());
+    };
+  else if (of_kind && growing && !options.quiet)
+    before_light = [&](PictureGoal&, const PreviewCost& preview) {
+      tell_expected(options, prepared, film, preview, run.control());
+    };
   else if (of_kind)
     tell_of_kind(options, prepared, "`pointgi info` tells the seconds");
   PictureOutput output(output_of(options), description.render.auto_exposure
@@ -254,9 +258,8 @@ ExitCode run_render(const RenderOptions& options) {
                                                : std::optional<double>(description.render.exposure));
   const PictureRun picture{context, prepared, film, options.integrator == "path", pixels, run.control()};
   const MadePictureFiles made =
-      grows(options, pixels)
-          ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), choose, output)
-          : make_picture_at_once(picture, output);
+      growing ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), before_light, output)
+              : make_picture_at_once(picture, output);
   if (description.render.auto_exposure)
     spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,
                  output.png_light().exposure);

@@ -9,6 +9,10 @@ namespace pointgi {
 /// The error of the second run less that of the first, and the interval that holds it in 95 of 100 measurements.
 using ErrorChange = std::function<Estimate(const MeasuredRun& before, const MeasuredRun& after)>;
 
+/// Whether the second has more error than the first: by more than the interval of the change holds, and by more than
+/// a twentieth of it, as the noise of light is alike over whole surfaces and intervals know nothing of that.
+bool rises(const MeasuredRun& before, const MeasuredRun& after, const ErrorChange& change = {});
+
 /// "falls", or where the error of the curve's runs does not fall from value to value and why, with what theory says;
 /// and the values that were skipped. `change`, if given, tells more than the errors' own intervals: runs of one seed
 /// have much in common.

@@ -2,6 +2,7 @@
 #include "host/scene/limits.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pointgi {
 
@@ -45,33 +46,71 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-double factor_of(const std::vector<Group>& groups) {
-  std::vector<double> factors;
-  for (const Group& group : groups) {
-    const auto known =
-        std::find_if(group.begin(), group.end(), [](const auto* run) { return std::isfinite(run->noise); });
-    if (known == group.end()) continue;
-    const MeasuredRun &noisy = **known, &clean = *group.back();
-    // The difference must be one of noise, not of chance.
-    if (noisy.noise > 2.0 * clean.noise && noisy.error.low > clean.error.high)
-      factors.push_back((noisy.error.value - clean.error.value) / (noisy.noise - clean.noise));
+/// What the variances of a group's pictures tell of one sample; absent: nothing, as of single samples.
+std::optional<double> noise_of_one(const Group& group) {
+  std::vector<double> noises;
+  for (const MeasuredRun* run : group)
+    if (std::isfinite(run->noise)) noises.push_back(run->noise * run->samples);
+  return noises.empty() ? std::nullopt : std::optional(median_of(noises));
+}
+
+/// By how much a group's errors are off, relative, from those of the model and of the light that fits best; squared.
+double misfit(const Group& group, double of_one, const NoiseModel& model) {
+  double sum = 0.0, weights = 0.0, squares = 0.0;
+  const auto weight_of = [](const MeasuredRun& run) { return 1.0 / (run.error.value * run.error.value); };
+  const auto rest_of = [&](const MeasuredRun& run) { return run.error.value - model.noise(of_one, run.samples); };
+  for (const MeasuredRun* run : group) {
+    sum += weight_of(*run) * rest_of(*run);
+    weights += weight_of(*run);
   }
-  return factors.empty() ? 1.0 : std::clamp(median_of(factors), 0.1, 1.5);
+  const double light = std::max(0.0, sum / weights);
+  for (const MeasuredRun* run : group)
+    squares += weight_of(*run) * std::pow(rest_of(*run) - light, 2.0);
+  return squares;
+}
+
+NoiseModel model_of(const std::vector<Group>& groups) {
+  std::vector<std::pair<Group, double>> told;
+  for (Group group : groups) {
+    const auto of_one = noise_of_one(group);
+    const auto is_lost = [](const MeasuredRun* run) { return !(run->error.value > 0.0); };
+    group.erase(std::remove_if(group.begin(), group.end(), is_lost), group.end());
+    if (of_one && group.size() > 1 && group.front()->samples < group.back()->samples)
+      told.emplace_back(std::move(group), *of_one);
+  }
+  if (told.empty()) return {};
+  // The best of a grid, then of a finer one about it.
+  NoiseModel best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto search = [&](NoiseModel about, double factor_step, double power_step) {
+    constexpr int steps = 20;
+    for (int i = -steps; i <= steps; ++i)
+      for (int j = -steps; j <= steps; ++j) {
+        const NoiseModel model{about.factor * std::exp(i * factor_step),
+                               std::clamp(about.power + j * power_step, 1.0, 2.0)};
+        double off = 0.0;
+        for (const auto& [group, of_one] : told)
+          off += misfit(group, of_one, model);
+        if (off < least) least = off, best = model;
+      }
+  };
+  search({0.5, 1.5}, 0.1, 0.025);
+  search(best, 0.005, 0.00125);
+  return best;
 }
 
 } // namespace
 
-double noise_factor(const Trade& trade) {
-  return factor_of(groups_of(trade));
+NoiseModel noise_model(const Trade& trade) {
+  return model_of(groups_of(trade));
 }
 
 std::vector<LightChoice> light_choices(const Trade& trade) {
   const std::vector<Group> groups = groups_of(trade);
-  const double factor = factor_of(groups);
+  const NoiseModel model = model_of(groups);
   std::vector<double> noises;
   for (const Group& group : groups)
-    for (const MeasuredRun* run : group)
-      if (std::isfinite(run->noise)) noises.push_back(factor * run->noise * run->samples);
+    if (const auto of_one = noise_of_one(group)) noises.push_back(*of_one);
   const double usual_noise = noises.empty() ? 0.0 : median_of(noises);
   std::vector<LightChoice> choices;
   for (const Group& group : groups) {
@@ -81,8 +120,9 @@ std::vector<LightChoice> light_choices(const Trade& trade) {
     choice.overrides = light_overrides(best);
     choice.seconds_a_sample = picture_seconds(best) / (double(trade.width) * trade.height * best.samples);
     choice.light_seconds = std::max(0.0, best.seconds.value - picture_seconds(best));
-    choice.noise_a_sample = std::isfinite(best.noise) ? factor * best.noise * best.samples : usual_noise;
-    const double noise = choice.noise_a_sample / best.samples;
+    choice.noise_a_sample = noise_of_one(group).value_or(usual_noise);
+    choice.noise = model;
+    const double noise = model.noise(choice.noise_a_sample, best.samples);
     choice.light_error = {best.error.value - noise, best.error.low - noise, best.error.high - noise};
     choices.push_back(std::move(choice));
   }
@@ -94,7 +134,7 @@ double seconds_of(const LightChoice& light, double pixels, int samples) {
 }
 
 double error_of(const LightChoice& light, int samples) {
-  return std::max(light.light_error.value, 0.0) + light.noise_a_sample / samples;
+  return std::max(light.light_error.value, 0.0) + light.noise.noise(light.noise_a_sample, samples);
 }
 
 namespace {
@@ -112,8 +152,9 @@ std::optional<PictureChoice> choose_for_error(const std::vector<LightChoice>& li
   std::optional<PictureChoice> best;
   for (const LightChoice& light : lights) {
     const double left = error - std::max(light.light_error.value, 0.0);
-    if (!(left > 0.0) || light.noise_a_sample / left > most_samples) continue;
-    const PictureChoice choice = picture_of(light, pixels, std::ceil(light.noise_a_sample / left));
+    const double samples = left > 0.0 ? light.noise.samples(light.noise_a_sample, left) : 2.0 * most_samples;
+    if (samples > most_samples) continue;
+    const PictureChoice choice = picture_of(light, pixels, std::ceil(samples));
     if (!best || choice.seconds < best->seconds) best = choice;
   }
   return best;

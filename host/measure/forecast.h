@@ -1,6 +1,7 @@
 #pragma once
 /// What a measured setting would take and give in a picture of another size and with other samples, and the choice of
 /// one for a time or an error.
+#include "host/measure/noise_model.h"
 #include "host/measure/trade.h"
 
 namespace pointgi {
@@ -12,16 +13,17 @@ struct LightChoice {
   double light_seconds = 0.0;         ///< of everything but the picture
   double seconds_a_sample = 0.0;      ///< of a pixel
   Estimate light_error;               ///< relMSE that more samples leave; may be below 0 within its interval
-  double noise_a_sample = 0.0;        ///< relMSE that the noise of one sample a pixel has, which falls as 1 over them
+  double noise_a_sample = 0.0;        ///< relMSE of one sample a pixel, as the variances of pixels tell it
+  NoiseModel noise;                   ///< what that makes of more samples
 };
 
 /// The settings of the trade's runs; of runs that differ in render.spp alone there is one. Those whose surface is
 /// another one than the reference's are among them: their error says so.
 std::vector<LightChoice> light_choices(const Trade& trade);
 
-/// How much of the noise that pixels' variances tell pictures have: samples are stratified, and the variance knows
-/// nothing of it. From runs that differ in render.spp alone; 1 where the trade has none. Within 0.1 and 1.5.
-double noise_factor(const Trade& trade);
+/// The model that fits the errors of runs which differ in render.spp alone, by least squares of what they are off by
+/// relatively; what variances tell, where the trade has none.
+NoiseModel noise_model(const Trade& trade);
 
 struct PictureChoice {
   LightChoice light;

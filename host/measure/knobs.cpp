@@ -3,6 +3,8 @@
 #include "host/scene/nearest.h"
 #include "host/scene/presets.h"
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace pointgi {
@@ -30,8 +32,6 @@ struct Row {
   std::string (*own)(const Scene&);
   std::vector<const char*> with = {}; ///< overrides that go with every value
 };
-
-constexpr const char* method_key = "radiosity.method";
 
 /// --quality, whose values stand for several keys.
 constexpr const char* quality_name = "quality";
@@ -215,7 +215,7 @@ Knob quality_knob(const Scene& scene) {
   knob.is_of_several_keys = true;
   for (const Preset& preset : presets()) {
     const std::vector<std::string> overrides = preset_overrides(preset, scene);
-    knob.values.push_back({preset.name, overrides, overrides.empty()});
+    knob.values.push_back({preset.name, overrides, overrides.empty(), overrides.empty()});
   }
   return knob;
 }
@@ -225,9 +225,8 @@ std::string name_of_key(const std::string& key) {
 }
 
 bool has_specular(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const MaterialSettings& m) {
-    return m.type == MaterialType::mirror || m.type == MaterialType::glass || m.type == MaterialType::conductor;
-  });
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const MaterialSettings& m) { return (m.flags & MATERIAL_SPECULAR) != 0; });
 }
 
 /// Light that one estimate a point does not give exactly.
@@ -246,7 +245,7 @@ std::string reason_against(const Row& row, const KnobScene& of) {
   case Needs::exchange:
     return of.method == "none" ? "left out: no light is exchanged between this scene's surfaces" : "";
   case Needs::photons:
-    if (!has_specular(of.scene)) return "left out: no material of the scene is a mirror, glass or a metal";
+    if (!has_specular(of.scene)) return "left out: no material of the scene is specular";
     return of.scene.caustics.photons == 0 ? "left out: caustics.photons is 0" : "";
   case Needs::lights:
     return has_estimated_light(of.scene) ? "" : "left out: one estimate gives the light of these lamps exactly";
@@ -257,6 +256,11 @@ std::string reason_against(const Row& row, const KnobScene& of) {
 /// Whether the value would have every point ask every other.
 bool asks_pairs(const std::string& key, const std::string& value) {
   return key == "radiosity.sampling" && value == "all";
+}
+
+/// Direct light that is computed at the points needs an exchange.
+bool is_impossible(const std::string& key, const std::string& value, const Scene& scene) {
+  return key == method_key && value == "none" && scene.radiosity.direct_light == "radiosity";
 }
 
 KnobValue value_of(const Row& row, const std::string& text, const KnobScene& of) {
@@ -297,14 +301,17 @@ Knob knob_of(const Row& row, const KnobScene& of) {
   knob.of_exchange = row.needs == Needs::exchange && knob.key != method_key;
   if (knob.left_out.empty())
     for (const std::string& text : values_of(row, of))
-      if (!asks_pairs(row.key, text) || pairs <= most_rays_of_pairs) knob.values.push_back(value_of(row, text, of));
+      if ((!asks_pairs(row.key, text) || pairs <= most_rays_of_pairs) && !is_impossible(row.key, text, of.scene))
+        knob.values.push_back(value_of(row, text, of));
   return knob;
 }
 
 } // namespace
 
 bool is_number(const std::string& value) {
-  return !value.empty() && value.find_first_not_of("0123456789.e-") == std::string::npos;
+  char* end = nullptr;
+  const double number = std::strtod(value.c_str(), &end);
+  return !value.empty() && *end == '\0' && std::isfinite(number) && number >= 0.0;
 }
 
 std::vector<Knob> knobs_of(const KnobScene& scene) {

@@ -6,6 +6,8 @@
 
 namespace pointgi {
 
+inline constexpr char method_key[] = "radiosity.method";
+
 struct KnobValue {
   std::string text;                   ///< "64"
   std::vector<std::string> overrides; ///< {"radiosity.method=directions", "radiosity.directions=64"}
@@ -38,7 +40,7 @@ struct KnobScene {
 /// All knobs, in the order in which they are asked, each with its reason where the scene does not need it.
 std::vector<Knob> knobs_of(const KnobScene& scene);
 
-/// Whether a value is a number, as "0.001".
+/// Whether a value is a number of 0 or more, as "0.001" or "1e+06".
 bool is_number(const std::string& value);
 
 /// Names and keys of all knobs, for errors and for help.

@@ -83,17 +83,18 @@ std::pair<int, int> size_to_measure(int width, int height, double seconds_a_samp
   return {scaled(width), scaled(height)};
 }
 
-MadeReference trace_reference(PictureMaker& maker, double seconds, unsigned seed,
+MadeReference trace_reference(PictureMaker& maker, double seconds, const std::function<unsigned(unsigned)>& seed,
                               const std::function<double()>& elapsed, const RunControl& run) {
   const double begun = elapsed();
   Half halves[2];
   MadeReference made;
   double pace = 0.0; // of a sample of both halves
+  unsigned pictures = 0;
   try {
     for (int samples = 1; samples > 0;) {
       const double before = elapsed();
       for (Half& half : halves) {
-        const MadePicture traced = maker.trace(samples, seed++, run);
+        const MadePicture traced = maker.trace(samples, seed(pictures++), run);
         if (made.shown.channels.empty()) made.shown = traced.picture;
         half.add(traced.picture, samples);
       }

@@ -19,10 +19,10 @@ struct MadeReference {
 /// as leave the reference enough samples. `seconds_a_sample`: of one at 160 pixels; `seconds`: for the reference.
 std::pair<int, int> size_to_measure(int width, int height, double seconds_a_sample, double seconds);
 
-/// Path-traced halves within `seconds`, at least one sample a pixel each, with seeds from `seed` on. `elapsed`: seconds
-/// of a clock of the caller's. Throws Error(interrupted) when `run` ends before both have a sample; what is there is
-/// kept otherwise.
-MadeReference trace_reference(PictureMaker& maker, double seconds, unsigned seed,
+/// Path-traced halves within `seconds`, at least one sample a pixel each, `seed`: of the k-th picture that is
+/// traced for it. `elapsed`: seconds of a clock of the caller's. Throws Error(interrupted) when `run` ends before both
+/// have a sample; what is there is kept otherwise.
+MadeReference trace_reference(PictureMaker& maker, double seconds, const std::function<unsigned(unsigned)>& seed,
                               const std::function<double()>& elapsed, const RunControl& run);
 
 /// A file's. Throws Error(input) where it cannot be read, is a part of a picture or has no R, G and B, or is not of the

@@ -9,6 +9,7 @@
 #include "host/output_folder.h"
 #include "host/run.h"
 #include "host/scene/input_files.h"
+#include "octree/clock.h"
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 /// Of the budget. What is begun is stopped before the end is later than that.
 constexpr double reference_share = 1.0 / 3.0, warm_share = 0.05, latest_end = 1.05;
 
-/// More than repetitions of a run: the reference's seeds come after theirs.
+/// More than a run has repetitions: the reference's seeds come after theirs.
 constexpr unsigned seeds_of_runs = 1000;
 
 /// Photons that are enough to run their kernels.
@@ -115,12 +116,14 @@ public:
   }
 
 private:
-  double elapsed() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - options_.begun).count();
-  }
+  double elapsed() const { return seconds_since(options_.begun); }
   double left() const { return options_.budget - elapsed(); }
-  /// Of the first picture of each run: another render.seed gives a measurement that is independent of this one.
-  unsigned first_seed() const { return maker_.first_seed(); }
+  /// Of each run's repetition. A scene of another render.seed has none of these: 2^32 over the golden ratio, whose
+  /// multiples come near each other late.
+  unsigned seed_of(std::size_t repeat) const {
+    return maker_.first_seed() + static_cast<unsigned>(repeat) * 2654435769u;
+  }
+  unsigned first_seed() const { return seed_of(0); }
   bool user_stops() const { return run_.stop && run_.stop(); }
   bool stop_now() const { return user_stops() || elapsed() > stop_at_; }
 
@@ -209,7 +212,8 @@ private:
       const double most = std::min(reference_share * options_.budget, 0.5 * left());
       let_begin();
       made_ = trace_reference(
-          maker_, most, first_seed() + seeds_of_runs, [this] { return elapsed(); }, inner_);
+          maker_, most, [this](unsigned traced) { return seed_of(seeds_of_runs + traced); },
+          [this] { return elapsed(); }, inner_);
       if (user_stops()) throw Error(ErrorKind::interrupted, "interrupted while the reference was made");
       // Runs of another reference must not be gone on with.
       for (const char* name : {trade_json_name, kept_errors_name})
@@ -225,7 +229,7 @@ private:
     const auto [columns, rows] = size_to_measure(width, height, 1e9, 1.0); // the smallest
     maker_.set_size(columns, rows);
     maker_.trace(1, first_seed(), inner_); // builds the kernels
-    const double pace = maker_.trace(1, first_seed() + 1, inner_).seconds;
+    const double pace = maker_.trace(1, seed_of(1), inner_).seconds;
     return size_to_measure(width, height, pace, reference_share * options_.budget);
   }
 
@@ -301,20 +305,9 @@ private:
     return {[this](MeasuredRun& run, double most) { return measure_once(run, most); },
             [this] { return left() - warm_share * options_.budget; },
             [this](const MeasuredRun& run) { return maker_.kept_seconds(run.setting.overrides, first_seed()); },
-            [this](const MeasuredRun& before, const MeasuredRun& after) { return change(before, after); }};
-  }
-
-  /// By the tiles of the pictures that have a seed in common: where both are off by the same it falls out.
-  Estimate change(const MeasuredRun& before, const MeasuredRun& after) const {
-    const std::vector<std::vector<double>>&a = errors_.at(before.name).tile_sums(),
-          &b = errors_.at(after.name).tile_sums();
-    std::vector<std::vector<double>> differences;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-      std::vector<double>& tiles = differences.emplace_back(b[i]);
-      for (std::size_t t = 0; t < tiles.size(); ++t)
-        tiles[t] -= a[i][t];
-    }
-    return ErrorOfRepeats(trade_.width, trade_.height, std::move(differences), 0.0).estimate();
+            [this](const MeasuredRun& before, const MeasuredRun& after) {
+              return errors_.at(after.name).change_from(errors_.at(before.name));
+            }};
   }
 
   bool measure_once(MeasuredRun& run, double most) {
@@ -324,7 +317,7 @@ private:
     else
       stop_at_ = std::min(begun + std::max(most, 0.0), latest_end * options_.budget);
     try {
-      const auto seed = first_seed() + static_cast<unsigned>(run.repeats.size());
+      const auto seed = seed_of(run.repeats.size());
       MadePicture made = maker_.make(run.setting.overrides, seed, inner_);
       if (made.compiled) {
         stop_at_ = std::max(stop_at_, std::min(stop_at_ + (elapsed() - begun), latest_end * options_.budget));

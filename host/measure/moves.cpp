@@ -5,7 +5,6 @@ namespace pointgi {
 
 namespace {
 
-constexpr const char* method_key = "radiosity.method";
 constexpr const char* no_method = "none"; ///< of the exchange
 constexpr const char* samples_key = "render.spp";
 

@@ -1,17 +1,11 @@
 #include "host/measure/picture_maker.h"
 #include "host/cache/vmap_cache.h"
+#include "octree/clock.h"
 #include <algorithm>
-#include <chrono>
 
 namespace pointgi {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begun) {
-  return std::chrono::duration<double>(Clock::now() - begun).count();
-}
 
 /// Those that the octree and the surface on the device depend on.
 std::string preparing_overrides(const std::vector<std::string>& overrides) {

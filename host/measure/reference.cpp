@@ -211,6 +211,17 @@ Spread spread_of_groups(const std::vector<double>& sums, const std::vector<doubl
 
 } // namespace
 
+Estimate ErrorOfRepeats::change_from(const ErrorOfRepeats& before) const {
+  ErrorOfRepeats change = *this;
+  const std::size_t common = std::min(count(), before.count());
+  std::vector<double> sums(repeats_.front().size(), 0.0);
+  for (std::size_t i = 0; i < common; ++i)
+    for (std::size_t tile = 0; tile < sums.size(); ++tile)
+      sums[tile] += (repeats_[i][tile] - before.repeats_[i][tile]) / static_cast<double>(common);
+  change.repeats_ = {std::move(sums)};
+  return change.estimate();
+}
+
 Estimate ErrorOfRepeats::estimate() const {
   double mean = 0.0;
   for (const std::vector<double>& sums : repeats_)

@@ -77,6 +77,10 @@ public:
   std::size_t count() const { return repeats_.size(); }
   /// Of at least one picture.
   Estimate estimate() const;
+  /// How much more error these pictures have than those `before`, of the same size and seeds, of which there is at
+  /// least one of both. Where both are off by the same, as at silhouettes, it falls out. The interval comes from how
+  /// the tiles' changes differ within groups, as that of one picture: what the reference's noise does to all is in it.
+  Estimate change_from(const ErrorOfRepeats& before) const;
 
   static std::size_t tiles(int width, int height);
   /// Of each picture the sum of the errors of each tile, row after row.

@@ -1,6 +1,7 @@
 #include "host/measure/search.h"
 #include "host/measure/finding.h"
 #include "host/measure/front_gain.h"
+#include "host/measure/intervals.h"
 #include "host/measure/moves.h"
 #include "host/repeats.h"
 #include <algorithm>
@@ -16,15 +17,14 @@ namespace {
 /// An error that is lost in the reference's noise counts as this one.
 constexpr double least_error = 1e-9;
 
-/// A cost that grows from value to value is taken to grow no faster than this.
-constexpr double fastest_growth = 5.0;
-
 double seconds_of(const MeasuredRun& run) {
   return std::max(run.seconds.value, 1e-6);
 }
 
+/// No less than can be told of it: what is lost in the reference's noise is not infinitely better than other runs.
 double error_of(const MeasuredRun& run) {
-  return std::max(run.error.value, least_error);
+  constexpr double share_told = 0.25; // of half of the interval
+  return std::max({run.error.value, share_told * 0.5 * (run.error.high - run.error.low), least_error});
 }
 
 /// A run may take this long [s] whatever the budget: its kernels may have to be built.
@@ -44,10 +44,10 @@ public:
     const double share =
         std::max(options_.longest_share, 0.5 / static_cast<double>(std::max<std::size_t>(1, knobs_.size())));
     longest_ = std::max({share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
-    const bool whole = choose_start() && singles() && combinations(&Search::best_candidates) && repeats(true) &&
-                       combinations(&Search::near_candidates) && repeats(false);
+    const bool whole = choose_start() && singles() && confirm_rises() && combinations(&Search::best_candidates) &&
+                       repeats(true) && combinations(&Search::near_candidates) && repeats(false);
     mark_front(trade_);
-    tell_curves();
+    if (!lines_.empty()) tell_curves();
     return whole;
   }
 
@@ -101,17 +101,6 @@ private:
     return world_.kept ? std::max(0.0, seconds - world_.kept(run)) : seconds;
   }
 
-  /// How long the next value of a knob will take, by those before it.
-  double next_seconds(const std::vector<std::size_t>& before) const {
-    std::vector<double> costs;
-    for (const std::size_t i : before)
-      if (trade_.runs[i].refused.empty()) costs.push_back(seconds_of(trade_.runs[i]));
-    if (costs.empty()) return seconds_of(start());
-    constexpr double usual_growth = 1.5;
-    if (costs.size() == 1) return costs.back() * usual_growth;
-    return costs.back() * std::clamp(costs.back() / costs[costs.size() - 2], 1.0, fastest_growth);
-  }
-
   struct Line {
     const Knob* knob;
     std::vector<std::size_t> runs;               ///< in the order of the values
@@ -141,6 +130,27 @@ private:
     return run;
   }
 
+  /// How long the next value of a knob will take, by those before it.
+  double next_seconds(const Line& line) const {
+    constexpr double usual_growth = 1.5, least_step = 1.5;
+    std::vector<std::pair<std::string, double>> known;
+    for (std::size_t i = 0; i < line.runs.size(); ++i)
+      if (trade_.runs[line.runs[i]].refused.empty())
+        known.emplace_back(line.values[i], seconds_of(trade_.runs[line.runs[i]]));
+    if (known.empty()) return seconds_of(line.knob->is_of_several_keys ? own() : start());
+    const auto& [last, seconds] = known.back();
+    const std::string& next = line.knob->values[line.next].text;
+    if (!is_number(last) || !is_number(next)) return usual_growth * seconds;
+    // Costs grow as the values, or as 1 over them, from what all values cost. Of two that are close chance tells more.
+    const bool rising = std::stod(next) > std::stod(last);
+    const auto size = [&](const std::string& value) { return rising ? std::stod(value) : 1.0 / std::stod(value); };
+    const auto before = std::find_if(known.rbegin() + 1, known.rend(),
+                                     [&](const auto& one) { return size(last) >= least_step * size(one.first); });
+    if (before == known.rend()) return usual_growth * seconds;
+    const double slope = std::max(0.0, seconds - before->second) / (size(last) - size(before->first));
+    return seconds + slope * (size(next) - size(last));
+  }
+
   bool costs_little(const Knob& knob) const {
     return world_.kept && std::all_of(knob.values.begin(), knob.values.end(), [&](const KnobValue& value) {
              return value.own || world_.kept(run_of(knob, value)) > 0.0;
@@ -152,22 +162,24 @@ private:
     const Knob& knob = *line.knob;
     if (line.next >= knob.values.size()) return;
     const MeasuredRun run = run_of(knob, knob.values[line.next]);
-    if (is_known(run))
-      line.cost = 0.0;
-    else
-      line.cost =
-          cost_of(run, line.runs.empty() && knob.is_of_several_keys ? seconds_of(own()) : next_seconds(line.runs));
+    line.cost = is_known(run) ? 0.0 : cost_of(run, next_seconds(line));
   }
 
   /// How much later than its cost says a value's turn comes: knobs that the scene's own method reads come first, those
-  /// for which other kernels have to be built come last.
-  double patience(const Knob& knob) const {
-    if (knob.is_of_program()) return 4.0;
-    const bool is_read = knob.method.empty() || knob.method == own().setting.method;
-    return is_read && !knob.is_of_several_keys ? 1.0 : 1.5;
+  /// of methods that are far from the front and those for which other kernels have to be built come last.
+  double patience(const Line& line) const {
+    constexpr double soon = 1.0, later = 1.5, last = 4.0, far = 0.5; // of a logarithm
+    const Knob& knob = *line.knob;
+    if (knob.is_of_program()) return last;
+    if (knob.method.empty() || knob.method == own().setting.method) return knob.is_of_several_keys ? later : soon;
+    const auto is_near = [&](std::size_t at) {
+      return trade_.runs[at].refused.empty() && behind_of(trade_.runs[at]) <= far;
+    };
+    return line.runs.empty() || std::any_of(line.runs.begin(), line.runs.end(), is_near) ? later : last;
   }
 
   bool single(Line& line, double reserve) {
+    foretell(line); // what was kept may have made room since
     const std::size_t place = line.next++;
     const KnobValue& value = line.knob->values[place];
     const MeasuredRun run = run_of(*line.knob, value);
@@ -176,7 +188,10 @@ private:
       return true;
     }
     const std::size_t at = place_of(run);
-    if (!once(at, std::min(world_.left(), longest_))) return false;
+    if (!once(at, std::min(world_.left(), longest_))) {
+      line.next = place;
+      return false;
+    }
     line.runs.push_back(at);
     line.values.push_back(value.text);
     line.of_value[place] = at;
@@ -196,12 +211,29 @@ private:
       Line* next = nullptr;
       for (Line& line : lines_)
         if (line.next < line.knob->values.size() &&
-            (next == nullptr || patience(*line.knob) * line.cost < patience(*next->knob) * next->cost))
+            (next == nullptr || patience(line) * line.cost < patience(*next) * next->cost))
           next = &line;
       if (next == nullptr) return true;
       if (!single(*next, reserve)) return false;
       foretell(*next);
     }
+  }
+
+  /// Where the error rises against theory, that may be chance of one seed: others tell.
+  bool confirm_rises() {
+    for (const Line& line : lines_)
+      for (std::size_t i = 1; i < line.runs.size() && line.knob->falls; ++i) {
+        const std::size_t before = line.runs[i - 1], after = line.runs[i];
+        while (rises(trade_.runs[before], trade_.runs[after], world_.change) &&
+               std::min(trade_.runs[before].repeats.size(), trade_.runs[after].repeats.size()) < options_.repeats)
+          for (const std::size_t at : {before, after}) {
+            MeasuredRun& run = trade_.runs[at];
+            if (run.repeats.size() >= options_.repeats) continue;
+            if (seconds_of(run) > std::min(longest_, 0.5 * world_.left())) return true;
+            if (!world_.measure(run, world_.left())) return false;
+          }
+      }
+    return true;
   }
 
   static TradePoint point_of(const MeasuredRun& run) { return {seconds_of(run), error_of(run)}; }
@@ -221,12 +253,26 @@ private:
     double cost = 0.0; ///< of a first measurement; asked once, as a scene may be read for it
   };
 
-  /// What the run of a value showed, against that of the value that a setting has; absent: not measured.
-  const MeasuredRun* shown(const Line& line, std::optional<std::size_t> value) const {
-    const auto at = value ? line.of_value.find(*value) : line.of_value.end();
-    const MeasuredRun& run = at == line.of_value.end() ? start() : trade_.runs[at->second];
-    return run.refused.empty() ? &run : nullptr;
+  /// The run that shows what a knob's value does alone; nullptr: there is none.
+  const MeasuredRun* shown(const Line& line, std::size_t value) const {
+    const auto at = line.of_value.find(value);
+    return at != line.of_value.end() && trade_.runs[at->second].refused.empty() ? &trade_.runs[at->second] : nullptr;
   }
+
+  /// The run that shows what the value does that a setting has, but for that value.
+  const MeasuredRun* shown(const Line& line, const Overrides& overrides) const {
+    if (const auto value = value_in(overrides, *line.knob)) return shown(line, *value);
+    // None of the knob's: the scene's own, which the start has as well, or that of a method the scene has not chosen.
+    if (line.knob->method.empty()) return value_in(start().setting.overrides, *line.knob) ? nullptr : &start();
+    for (const Line& other : lines_)
+      for (const auto& [value, at] : other.of_value)
+        if (other.knob->key == method_key && other.knob->values[value].text == line.knob->method)
+          return trade_.runs[at].refused.empty() ? &trade_.runs[at] : nullptr;
+    return nullptr;
+  }
+
+  /// By how much the times of one setting differ, relative.
+  double scatter() const { return std::max(options_.steady, 2.0 * time_deviation(trade_)); }
 
   /// The setting of a run with another value of a knob: the time and the error change by what the knob alone has shown.
   std::optional<Candidate> moved(const MeasuredRun& from, const Line& line, std::size_t place) const {
@@ -234,8 +280,8 @@ private:
     const KnobValue& value = knob.values[place];
     const std::string& method = own().setting.method;
     if (!goes_with(from.setting.overrides, knob, value, method)) return std::nullopt;
-    const MeasuredRun *after = shown(line, place), *before = shown(line, value_in(from.setting.overrides, knob));
-    if (line.of_value.count(place) == 0 || after == nullptr || before == nullptr) return std::nullopt;
+    const MeasuredRun *after = shown(line, place), *before = shown(line, from.setting.overrides);
+    if (after == nullptr || before == nullptr) return std::nullopt;
     Candidate candidate;
     candidate.run.setting.overrides = with_value(from.setting.overrides, knob, value, knobs_, method);
     candidate.run.name =
@@ -247,8 +293,9 @@ private:
     const double error = of_after > of_before
                              ? of_from + of_after - of_before
                              : std::max(of_from + of_after - of_before, of_from * of_after / of_before);
-    candidate.foretold = {
-        std::max(seconds_of(from) + seconds_of(*after) - seconds_of(*before), least_left * seconds_of(from)), error};
+    double seconds = seconds_of(*after) - seconds_of(*before);
+    if (std::fabs(seconds) < scatter() * seconds_of(*before)) seconds = 0.0; // may be chance
+    candidate.foretold = {std::max(seconds_of(from) + seconds, least_left * seconds_of(from)), error};
     return candidate;
   }
 
@@ -279,17 +326,16 @@ private:
   std::vector<Candidate> best_candidates(double most) const {
     std::vector<Candidate> all = neighbours(most), chosen;
     std::vector<TradePoint> measured = points();
+    constexpr double beyond = 2.0; // what the measured ones reach
     TradePoint worst{0.0, 0.0};
     for (const TradePoint& point : measured)
-      worst = {std::max(worst.seconds, point.seconds), std::max(worst.error, point.error)};
-    for (const Candidate& candidate : all)
-      worst.seconds = std::max(worst.seconds, 2.0 * candidate.foretold.seconds);
-    const double scatter = std::log1p(options_.steady);
+      worst = {std::max(worst.seconds, beyond * point.seconds), std::max(worst.error, beyond * point.error)};
+    const double least_gain = std::log1p(options_.steady);
     while (chosen.size() < options_.candidates) {
       const Candidate* best = nullptr;
       double most_gained = 0.0;
       for (const Candidate& candidate : all) {
-        if (behind(candidate.foretold, measured) > -scatter) continue;
+        if (behind(candidate.foretold, measured) > -least_gain) continue;
         const double gained = area_gained(candidate.foretold, measured, worst) / std::max(candidate.cost, 1e-6);
         if (gained > most_gained) best = &candidate, most_gained = gained;
       }
@@ -359,7 +405,7 @@ private:
         if (!once(at, std::min(std::max(most, 0.0), std::max(longest_, off * candidate.cost)))) return false;
         if (trade_.runs[at].refused.empty()) places.push_back(at);
       }
-      if (places.empty() || trade_.runs.size() == before) return true;
+      if (trade_.runs.size() == before) return true;
       for (unsigned repeat = 1; repeat < options_.repeats; ++repeat) {
         places = better_half(places);
         for (const std::size_t at : places)
@@ -393,7 +439,10 @@ private:
       for (const std::size_t at : line.runs)
         curve.runs.push_back(trade_.runs[at].name);
       curve.values = line.values;
-      curve.finding = finding_of(trade_, *line.knob, curve, line.skipped, world_.change);
+      std::vector<std::string> skipped = line.skipped;
+      for (std::size_t v = line.next; v < line.knob->values.size(); ++v) // interrupted before
+        skipped.push_back(line.knob->values[v].text);
+      curve.finding = finding_of(trade_, *line.knob, curve, skipped, world_.change);
       trade_.knobs.push_back(curve);
     }
   }

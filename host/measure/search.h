@@ -22,8 +22,8 @@ struct SearchWorld {
 struct SearchOptions {
   unsigned repeats = 3;        ///< of a run, at most
   double steady = 0.1;         ///< half of the range of a run's repeats, relative: below it no more are needed
-  double singles_share = 0.68; ///< of the budget left after the scene's own setting, for the knobs alone
-  double longest_share = 0.1;  ///< of the budget, for one run that takes more than three times the scene's own
+  double singles_share = 0.55; ///< of the budget left after the scene's own setting, for the knobs alone
+  double longest_share = 0.1;  ///< of the budget, for a run of a knob alone that takes more than three times the own
   std::size_t candidates = 6;  ///< of a generation, before what it shows is asked for the next one
 };
 

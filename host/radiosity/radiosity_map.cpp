@@ -4,8 +4,8 @@
 #include "host/cl/kernel_source.h"
 #include "host/passes/visibility.h"
 #include "host/radiosity/parts_of_faces.h"
+#include "octree/clock.h"
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
 namespace pointgi {
@@ -38,11 +38,11 @@ public:
   std::vector<std::uint8_t> blocked(View<Segment> segments) override {
     if (rays_ == 0.0) {
       expected_ = ask_expected_();
-      begin_ = std::chrono::steady_clock::now();
+      begin_ = Clock::now();
     }
     auto answers = oracle_.blocked(segments);
     rays_ += static_cast<double>(segments.size);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const double seconds = seconds_since(begin_);
     char text[100];
     if (rays_ < expected_)
       std::snprintf(text, sizeof text, "%.1f of about %.0f million rays, %.0f s left", 1e-6 * rays_, 1e-6 * expected_,
@@ -58,7 +58,7 @@ private:
   std::function<double()> ask_expected_;
   double expected_ = 0.0;
   const WorkReport& report_;
-  std::chrono::steady_clock::time_point begin_;
+  Clock::time_point begin_;
   double rays_ = 0.0;
 };
 

@@ -31,9 +31,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
       points_(pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons, paths ? nullptr : cones)),
       params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
       shade_group_(paths ? WorkGroup{} : variant.group),
-      film_channels_(photons != nullptr        ? FILM_CHANNELS_CAUSTIC
-                     : normal_field != nullptr ? FILM_CHANNELS_SPECULAR
-                                               : FILM_CHANNELS) {
+      film_channels_(film_scalars(normal_field != nullptr, photons != nullptr)) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
   // Without, what shines and has a size is still seen, and so is the sky.
   const bool asks_lights = paths || shadow_rays;

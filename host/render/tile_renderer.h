@@ -9,6 +9,11 @@
 
 namespace pointgi {
 
+/// Scalars a pixel of a film: with specular surfaces their followed channels besides, with photons those of caustics.
+inline std::size_t film_scalars(bool specular, bool photons) {
+  return photons ? FILM_CHANNELS_CAUSTIC : specular ? FILM_CHANNELS_SPECULAR : FILM_CHANNELS;
+}
+
 /// Device seconds of a tile's two kernels.
 struct TileSeconds {
   double eye = 0.0;   ///< nearest hits of the eye rays
@@ -40,7 +45,7 @@ public:
   /// One pass of up to 32 samples over a tile of the image; returns the device's seconds.
   TileSeconds launch(int x, int y, int columns, int rows, pg_uint first_sample);
 
-  /// Scalars a pixel of the film: FILM_CHANNELS, or FILM_CHANNELS_SPECULAR with a normal field.
+  /// film_scalars() of its film.
   std::size_t film_channels() const { return film_channels_; }
 
   /// The film of the last tile, film_channels() a pixel: sums over the samples of all passes since the first.

@@ -3,8 +3,8 @@
 #include "host/cl/batches.h"
 #include "host/radiosity/direction_set.h"
 #include "host/stages/device_need.h"
+#include "octree/clock.h"
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace pointgi {
@@ -22,12 +22,6 @@ constexpr std::size_t pair_points = 1500, map_points = 3000, first_points = 256;
 constexpr std::uint64_t most_left = std::uint64_t{1} << 60; ///< room for all hits
 /// Of solutions that only tell what an apply costs.
 constexpr double loose = 0.5;
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 void quiet(const std::string&) {}
 

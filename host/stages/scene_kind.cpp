@@ -5,8 +5,8 @@ namespace pointgi {
 
 namespace {
 
-bool is_specular(const MaterialSettings& m) {
-  return m.type == MaterialType::mirror || m.type == MaterialType::glass || m.type == MaterialType::conductor;
+bool is_specular_alone(const MaterialSettings& m) {
+  return (m.flags & MATERIAL_SPECULAR) != 0 && (m.flags & MATERIAL_REFLECTS_DIFFUSELY) == 0;
 }
 
 bool camera_is_among(const Scene& scene, const PreparedScene& ready) {
@@ -23,7 +23,7 @@ bool camera_is_among(const Scene& scene, const PreparedScene& ready) {
 } // namespace
 
 std::string kind_of_scene(const Scene& scene, const PreparedScene& ready) {
-  if (std::any_of(scene.materials.begin(), scene.materials.end(), is_specular)) return "glass and mirror";
+  if (std::any_of(scene.materials.begin(), scene.materials.end(), is_specular_alone)) return "glass and mirror";
   const auto has = [&](CloudKind kind) {
     return std::find(ready.kinds.begin(), ready.kinds.end(), kind) != ready.kinds.end();
   };

@@ -1,4 +1,5 @@
 #include "octree/vmap/make_links.h"
+#include "octree/clock.h"
 #include "octree/mixed_bits.h"
 #include "octree/parallel.h"
 #include "octree/vmap/facing.h"
@@ -6,7 +7,6 @@
 #include "octree/vmap/point_shares.h"
 #include "octree/vmap/shafts.h"
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -14,12 +14,6 @@
 namespace pointgi {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// Pairs that a thread takes at a time.
 constexpr std::size_t grain = 256;

@@ -122,7 +122,7 @@ TEST_CASE("wrong usage is exit code 2 and says what is right") {
       {"render", "required"},
       {"render " + scene + " --size 10", "--size: expected WIDTHxHEIGHT"},
       {"render " + scene + " --size 10x", "--size: expected WIDTHxHEIGHT"},
-      {"render " + scene + " --size 0x10", "at least 1"},
+      {"render " + scene + " --size 0x10", "1 to 65536 pixels each"},
       {"render " + scene + " --spp 0", "--spp"},
       {"render " + scene + " --qualty draft", "did you mean \"--quality\""},
       {"render " + scene + " --pixelbounds 0,50,0,10", "0 <= x0 < x1 <= 40"},

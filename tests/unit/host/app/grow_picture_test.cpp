@@ -66,16 +66,16 @@ TEST_CASE("an error ends the samples as soon as the noise allows it") {
   PictureGoal goal;
   goal.error = 0.01;
   goal.light_error = 0.004;
-  goal.noise_factor = 0.5;
+  goal.noise = {0.5, 1.2};
   const double noise_of_one = 2.0;
-  const auto error_at = [&](int samples) { return goal.light_error + goal.noise_factor * noise_of_one / samples; };
-  for (const double forecast : {1.0, 0.1, 20.0, 0.0}) { // right, too small, too large, none
+  const auto error_at = [&](int samples) { return goal.light_error + goal.noise.noise(noise_of_one, samples); };
+  for (const double forecast : {2.0, 0.2, 40.0, 0.0}) { // right, too small, too large, none
     INFO(forecast);
     goal.noise_a_sample = forecast;
     const std::vector<int> all = steps(goal, for_ever, 0.0, noise_of_one);
     REQUIRE_FALSE(all.empty());
     CHECK(error_at(all.back()) <= *goal.error);
-    if (forecast <= 1.0) CHECK(error_at(all.back() - 32) > *goal.error); // no more than a pass too many
+    if (forecast <= 2.0) CHECK(error_at(all.back() - 32) > *goal.error); // no more than a pass too many
   }
 }
 

@@ -55,24 +55,41 @@ LightChoice named(const std::vector<LightChoice>& lights, const std::string& nam
 
 TEST_CASE("a setting's light and its noise are told apart by runs of other samples") {
   const Trade trade = trade_of();
-  CHECK(noise_factor(trade) == Approx(stratified));
+  CHECK(noise_model(trade).factor == Approx(stratified).epsilon(0.01));
+  CHECK(noise_model(trade).power == Approx(1.0).epsilon(0.002));
   const std::vector<LightChoice> lights = light_choices(trade);
   REQUIRE(lights.size() == 3);
   const LightChoice own = named(lights, "spp-128");
   CHECK(own.overrides.empty());
   CHECK(own.light_seconds == Approx(2.0));
   CHECK(own.seconds_a_sample == Approx(pixel_seconds));
-  CHECK(own.light_error.value == Approx(1e-3));
-  CHECK(own.noise_a_sample == Approx(stratified * own_noise));
+  CHECK(own.light_error.value == Approx(1e-3).epsilon(0.01));
+  CHECK(own.noise_a_sample == Approx(own_noise));
   CHECK(named(lights, "directions-2048").overrides == std::vector<std::string>{"radiosity.directions=2048"});
   CHECK(seconds_of(own, 640 * 480, 64) == Approx(2.0 + pixel_seconds * 640 * 480 * 64));
-  CHECK(error_of(own, 64) == Approx(1e-3 + stratified * own_noise / 64));
+  CHECK(error_of(own, 64) == Approx(1e-3 + stratified * own_noise / 64).epsilon(0.01));
+}
+
+TEST_CASE("noise that falls faster than the samples grow is foretold so") {
+  Trade trade = trade_of();
+  for (MeasuredRun& run : trade.runs)
+    if (run.refused.empty()) {
+      const double light = run.error.value - stratified * own_noise / run.samples;
+      run.error.value = light + 0.9 * own_noise / std::pow(run.samples, 1.3);
+    }
+  const NoiseModel model = noise_model(trade);
+  CHECK(model.power == Approx(1.3).epsilon(0.01));
+  CHECK(model.factor == Approx(0.9).epsilon(0.02));
+  CHECK(model.noise(own_noise, 50) == Approx(0.9 * own_noise / std::pow(50, 1.3)).epsilon(0.02));
+  CHECK(model.samples(own_noise, model.noise(own_noise, 50)) == Approx(50));
+  CHECK(named(light_choices(trade), "spp-128").light_error.value == Approx(1e-3).epsilon(0.02));
 }
 
 TEST_CASE("noise is taken as it is where no two runs tell how far it goes") {
   Trade trade = trade_of();
   trade.runs = {trade.runs[0]};
-  CHECK(noise_factor(trade) == 1.0);
+  CHECK(noise_model(trade).factor == 1.0);
+  CHECK(noise_model(trade).power == 1.0);
   CHECK(light_choices(trade)[0].noise_a_sample == Approx(own_noise));
 }
 

@@ -1,23 +1,19 @@
 /// Intervals of times against what chance gives.
 #include "host/measure/intervals.h"
+#include "host/repeats.h"
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace pointgi;
 
 namespace {
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 MeasuredRun run_of(const std::vector<double>& repeats) {
   MeasuredRun run;
   run.repeats = repeats;
-  run.seconds.value = median(repeats);
+  run.seconds.value = median_of_repeats(repeats);
   return run;
 }
 
@@ -63,18 +59,32 @@ TEST_CASE("intervals of times hold the true time in about 95 of 100 measurements
   }
 }
 
-TEST_CASE("without a repetition nothing is known of how times vary") {
+TEST_CASE("intervals of times are as wide as the spread of all says") {
+  Trade trade;
+  const double e = std::exp(0.1);
+  for (int i = 0; i < 4; ++i)
+    trade.runs.push_back(run_of({1.0 / e, 1.0, e})); // variance 0.01, eight degrees of freedom
+  trade.runs.push_back(run_of({5.0}));
+  set_time_intervals(trade);
+  CHECK(time_deviation(trade) == Approx(0.1));
+  const double quantile = 2.306; // of eight, by the table
+  CHECK(std::log(trade.runs[0].seconds.high) == Approx(quantile * 0.1 * std::sqrt(0.449)).epsilon(0.002));
+  CHECK(std::log(trade.runs[0].seconds.low) == Approx(-quantile * 0.1 * std::sqrt(0.449)).epsilon(0.002));
+  CHECK(std::log(trade.runs[4].seconds.high / 5.0) == Approx(quantile * 0.1).epsilon(0.002));
+}
+
+TEST_CASE("of few repetitions the interval is their range, and what is no time does not count") {
   Trade trade;
   trade.runs.push_back(run_of({2.0}));
-  trade.runs.front().seconds = {2.0, 2.0, 2.0};
   MeasuredRun refused;
   refused.refused = "too long";
   trade.runs.push_back(refused);
-  set_time_intervals(trade);
-  CHECK(trade.runs.front().seconds.low == 2.0);
   trade.runs.push_back(run_of({1.0, 1.2}));
   set_time_intervals(trade);
-  CHECK(trade.runs.front().seconds.low < 2.0);
-  CHECK(trade.runs.front().seconds.high > 2.0);
+  CHECK(trade.runs[0].seconds.low == 2.0);
+  CHECK(trade.runs[0].seconds.high == 2.0);
   CHECK(trade.runs[1].seconds.high == 0.0);
+  CHECK(trade.runs[2].seconds.high == 1.2);
+  trade.runs.push_back(run_of({1.0, 1.2, std::numeric_limits<double>::infinity(), 0.0}));
+  CHECK(time_deviation(trade) == Approx(std::log(1.2) / std::sqrt(2.0)));
 }

@@ -97,11 +97,11 @@ TEST_CASE("knobs that a scene does not need are left out with a reason") {
   const test::SceneFolder folder;
   const Scene plain = folder.load(test::small_scene);
   const std::vector<Knob> knobs = knobs_of({plain, "none", 1000});
-  CHECK_THAT(named(knobs, "photons").left_out, Contains("mirror"));
+  CHECK_THAT(named(knobs, "photons").left_out, Contains("specular"));
   CHECK_THAT(named(knobs, "directions").left_out, Contains("no light is exchanged"));
   CHECK_THAT(named(knobs, "light_samples").left_out, Contains("exactly"));
   CHECK(named(knobs, "spp").left_out.empty());
-  CHECK_THAT(finding_of({}, named(knobs, "photons"), {}, {}), Contains("mirror"));
+  CHECK_THAT(finding_of({}, named(knobs, "photons"), {}, {}), Contains("specular"));
 }
 
 TEST_CASE("all pairs of points are not asked for where they are too many") {

@@ -84,3 +84,21 @@ TEST_CASE("the cheapest setting of a method, which a run is named by") {
   CHECK(name({"radiosity.method=none"}) == "method-none");
   CHECK(name_about({"render.spp=2"}, {}, "own", all, "directions") == "spp-2");
 }
+
+TEST_CASE("what light between surfaces reads goes where none is exchanged") {
+  std::vector<Knob> all = knobs();
+  Knob tolerance{"tolerance", "radiosity.tolerance", true, "", {{"0.1", {"radiosity.tolerance=0.1"}}}};
+  tolerance.of_exchange = true;
+  all.push_back(tolerance);
+  const Knob& method = all[1];
+  const Overrides loose = with_value({"render.spp=2"}, tolerance, tolerance.values[0], all, "fmm");
+  CHECK(loose == Overrides{"radiosity.tolerance=0.1", "render.spp=2"});
+  const Overrides none = with_value(loose, method, method.values[0], all, "fmm");
+  CHECK(none == Overrides{"radiosity.method=none", "render.spp=2"});
+  CHECK_FALSE(goes_with(none, tolerance, tolerance.values[0], "fmm"));
+  CHECK(goes_with(loose, tolerance, tolerance.values[0], "fmm"));
+  CHECK_FALSE(goes_with({}, tolerance, tolerance.values[0], "none")); // the scene's own
+  CHECK(cheapest(all, "none") == Overrides{"caustics.photons=1000"});
+  CHECK(cheapest(all, "fmm").size() == 4);
+  CHECK(name_about(none, {"radiosity.tolerance=0.1"}, "cheap", all, "fmm") == "cheap_method-none_spp-2");
+}

@@ -182,6 +182,47 @@ TEST_CASE("intervals of repeated pictures hold the truth, also where the error i
   CHECK(width_of_two < 0.5 * width_of_one);
 }
 
+TEST_CASE("the change of an error from one setting to another is told where the errors' own intervals do not tell it") {
+  // Both are off by as much in a stripe; the second has a little more noise everywhere.
+  const auto striped = [](double sigma, unsigned seed) {
+    Picture picture = noisy(sigma, seed);
+    for (const char* colour : Reference::colours)
+      for (int y = 0; y < height; ++y)
+        for (int x = 10; x < 24; ++x)
+          picture.channels[colour][static_cast<std::size_t>(y * width + x)] *= 0.4f;
+    return picture;
+  };
+  for (const unsigned pictures : {1u, 2u}) {
+    constexpr unsigned trials = 200;
+    std::vector<Estimate> changes;
+    unsigned apart = 0;
+    double truth = 0.0;
+    for (unsigned trial = 0; trial < trials; ++trial) {
+      const unsigned seed = 6 * trial;
+      const Reference reference(noisy(0.05, seed + 1), noisy(0.05, seed + 2));
+      ErrorOfRepeats before, after;
+      for (unsigned i = 0; i < pictures; ++i)
+        for (auto [error, sigma] : {std::pair(&before, 0.1), std::pair(&after, 0.13)}) {
+          const Picture picture = striped(sigma, seed + 3 + i);
+          error->add(reference.errors(picture), width, height, reference.deviation(picture));
+        }
+      changes.push_back(after.change_from(before));
+      truth += changes.back().value / trials;
+      apart += after.estimate().low > before.estimate().high ? 1 : 0;
+    }
+    INFO(pictures);
+    CHECK(truth == Approx(0.13 * 0.13 - 0.1 * 0.1).epsilon(0.2)); // relative noise is the same in the stripe
+    unsigned held = 0, told = 0;
+    for (const Estimate& change : changes) {
+      held += holds(change, truth) ? 1 : 0;
+      told += change.low > 0.0 ? 1 : 0;
+    }
+    CHECK(held >= 183); // as above
+    CHECK(told >= 190);
+    if (pictures == 1) CHECK(apart == 0);
+  }
+}
+
 TEST_CASE("the deviation by the reference's noise is what it varies by") {
   const Picture picture = noisy(0.2, 1);
   double sum = 0.0, squares = 0.0, told = 0.0;

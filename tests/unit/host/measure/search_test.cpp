@@ -1,5 +1,6 @@
 /// The order of measurements, driven by a model whose times and errors are known.
 #include "host/measure/finding.h"
+#include "host/measure/front_gain.h"
 #include "host/measure/search.h"
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,6 +16,7 @@ struct Model {
   double clock = 0.0, budget = 0.0;
   std::size_t runs = 0;
   std::size_t end_after = 1'000'000; ///< runs, after which the user stops it
+  bool steady = false;               ///< else a second run takes longer
 
   static double value_of(const MeasuredRun& run, const std::string& key, double otherwise) {
     for (const std::string& text : run.setting.overrides)
@@ -34,7 +36,7 @@ struct Model {
       return true;
     }
     clock += took;
-    run.repeats.push_back(took * (run.repeats.size() % 2 == 0 ? 1.0 : 1.3)); // not steady
+    run.repeats.push_back(took * (steady || run.repeats.size() % 2 == 0 ? 1.0 : 1.3));
     run.seconds = estimate_of_repeats(run.repeats);
     const double e = error(spp, rays);
     run.error = {e, 0.95 * e, 1.05 * e};
@@ -142,6 +144,90 @@ TEST_CASE("a search that was ended keeps what it has, and goes on") {
   CHECK(idle.runs == 0); // all are settled
 }
 
+namespace {
+
+TradePoint true_point(const MeasuredRun& run) {
+  const double spp = Model::value_of(run, "a.spp", 32), rays = Model::value_of(run, "b.rays", 512);
+  return {Model::seconds(spp, rays), Model::error(spp, rays)};
+}
+
+bool is_combination(const MeasuredRun& run) {
+  return run.setting.overrides.size() == 2;
+}
+
+/// The area that the runs before the `end`th leave behind them.
+double area_of(const std::vector<MeasuredRun>& runs, std::size_t end) {
+  double area = 0.0;
+  std::vector<TradePoint> points;
+  for (std::size_t i = 0; i < end; ++i) {
+    area += area_gained(true_point(runs[i]), points, {10.0, 0.1});
+    points.push_back(true_point(runs[i]));
+  }
+  return area;
+}
+
+} // namespace
+
+TEST_CASE("the settings that gain most for their cost come first") {
+  Model model;
+  model.steady = true;
+  const Trade trade = searched(1000.0, model); // all but hopeless ones, in the order in which they were taken
+  const auto first =
+      static_cast<std::size_t>(std::find_if(trade.runs.begin(), trade.runs.end(), is_combination) - trade.runs.begin());
+  REQUIRE(first == 7); // after the scene's own and the values of two knobs
+  REQUIRE(trade.runs.size() > first + 6);
+  // Of what is gained a second the first three have more than the three after them, and these more than all others.
+  const auto pace = [&](std::size_t from, std::size_t to) {
+    double seconds = 0.0;
+    for (std::size_t i = from; i < to; ++i)
+      seconds += true_point(trade.runs[i]).seconds;
+    return (area_of(trade.runs, to) - area_of(trade.runs, from)) / seconds;
+  };
+  CHECK(pace(first, first + 3) > 1.5 * pace(first + 3, first + 6));
+  CHECK(pace(first + 3, first + 6) > pace(first + 6, trade.runs.size()));
+  // The very first has most of all that there are.
+  double best = 0.0;
+  for (const int spp : {2, 8, 32, 128})
+    for (const int rays : {32, 128, 512, 2048}) {
+      std::vector<MeasuredRun> more(trade.runs.begin(), trade.runs.begin() + static_cast<std::ptrdiff_t>(first));
+      more.emplace_back().setting.overrides = {"a.spp=" + std::to_string(spp), "b.rays=" + std::to_string(rays)};
+      best = std::max(best, (area_of(more, first + 1) - area_of(more, first)) / true_point(more.back()).seconds);
+    }
+  CHECK(pace(first, first + 1) == Approx(best));
+}
+
+TEST_CASE("what a dearer value costs is foretold by how the cost grows with the value") {
+  Model model;
+  model.budget = 40.0;
+  std::vector<Knob> two = knobs();
+  two[1].values.clear(); // own is 512, and beside it stands 500
+  for (const int n : {32, 500, 512, 100000})
+    two[1].values.push_back({std::to_string(n), {"b.rays=" + std::to_string(n)}, n == 512, n == 512});
+  Trade trade;
+  search(trade, two, model.world());
+  for (const MeasuredRun& run : trade.runs)
+    CHECK(run.refused.empty()); // 200 s are not begun
+  CHECK_THAT(trade.knobs[1].finding, Catch::Contains("not measured for want of time: 100000"));
+}
+
+TEST_CASE("errors that are lost in the reference's noise do not look infinitely small") {
+  Trade trade;
+  Model model;
+  model.budget = 1000.0;
+  SearchWorld world = model.world();
+  const auto measure = world.measure;
+  world.measure = [&](MeasuredRun& run, double most) {
+    if (!measure(run, most)) return false;
+    if (Model::value_of(run, "b.rays", 512) == 2048) run.error = {-1e-5, -3e-3, 3e-3};
+    return true;
+  };
+  CHECK(search(trade, knobs(), world));
+  std::set<std::string> names;
+  for (const MeasuredRun& run : trade.runs)
+    names.insert(run.name);
+  CHECK(names.count("spp-8_rays-128") == 1); // 20 times as fast, and not hopeless beside it
+}
+
 TEST_CASE("a curve that rises is told, against theory or not") {
   Trade trade;
   for (const double error : {1.0, 0.5, 0.8}) {
@@ -162,9 +248,25 @@ TEST_CASE("a curve that rises is told, against theory or not") {
   trade.runs[2].bias = 0.5;
   CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("is off by +50 % and was by -0.1 %"));
   trade.runs[2].error = {0.5, 0.4, 0.6};
-  CHECK(finding_of(trade, knob, curve, {"9"}) == "falls; not measured, the budget being too small: 9");
+  CHECK(finding_of(trade, knob, curve, {"9"}) == "falls; not measured for want of time: 9");
   trade.runs[0].error = trade.runs[1].error;
   CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("stays the same"));
+  SECTION("what is known of the change tells more than the errors") {
+    const auto by = [](double change) {
+      return [change](const MeasuredRun&, const MeasuredRun&) {
+        return Estimate{change, change - 0.01, change + 0.01};
+      };
+    };
+    CHECK(finding_of(trade, knob, curve, {}, by(-0.02)) == "falls");
+    CHECK_THAT(finding_of(trade, knob, curve, {}, by(0.03)), Catch::Contains("rises from 0 to 10"));
+    CHECK_THAT(finding_of(trade, knob, curve, {}, by(0.02)), Catch::Contains("stays the same")); // a twenty-fifth
+  }
+  SECTION("of noise that is not known nothing is said") {
+    trade.runs[2].error = {0.8, 0.75, 0.85};
+    trade.runs[2].bias = 0.0;
+    trade.runs[1].noise = std::numeric_limits<double>::infinity();
+    CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("says why"));
+  }
 }
 
 TEST_CASE("repeats are summed up by their median and range") {

@@ -1,0 +1,44 @@
+#include "host/available_memory.h"
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+namespace pointgi {
+
+namespace {
+
+std::optional<std::uint64_t> number_in(const char* path) {
+  std::ifstream file(path);
+  std::uint64_t number = 0;
+  return file >> number ? std::optional(number) : std::nullopt; // "max": no limit
+}
+
+std::optional<std::uint64_t> left_of_machine() {
+  std::ifstream file("/proc/meminfo");
+  std::string key, unit;
+  for (std::uint64_t kilobytes = 0; file >> key >> kilobytes; std::getline(file, unit))
+    if (key == "MemAvailable:") return 1024 * kilobytes;
+  return std::nullopt;
+}
+
+/// Of a container, by the second version of control groups or by the first.
+std::optional<std::uint64_t> left_of_group() {
+  constexpr const char* files[][2] = {
+      {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"},
+      {"/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"}};
+  for (const auto& [limit_file, use_file] : files) {
+    const auto limit = number_in(limit_file), use = number_in(use_file);
+    if (limit && use) return *limit - std::min(*limit, *use);
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
+std::optional<std::uint64_t> available_memory() {
+  const auto machine = left_of_machine(), group = left_of_group();
+  if (!machine || !group) return machine ? machine : group;
+  return std::min(*machine, *group);
+}
+
+} // namespace pointgi
