@@ -152,7 +152,7 @@ PresetChoice choose_by_presets(const std::string& kind, const RenderOptions& opt
   const Preset* chosen = nullptr;
   for (const Preset& preset : presets()) {
     const auto reached = errors_of_kind(preset.name, kind);
-    const double error = reached ? reached->second : preset.error;
+    const double error = reached ? reached->second : promised_error(preset, kind);
     if (options.seconds && chosen != nullptr && time_of(preset) > for_light) break;
     chosen = &preset;
     if (options.error && error <= *options.error) break;

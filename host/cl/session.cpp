@@ -2,12 +2,13 @@
 #include "host/cl/device_clock.h"
 #include "host/cl/resource_error.h"
 #include "host/error.h"
-#include "octree/clock.h"
 #include <algorithm>
 
 namespace pointgi {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// "1048577 bytes (2 MiB)".
 std::string amount(std::uint64_t bytes) {
@@ -259,6 +260,9 @@ void Session::enqueue(cl::Kernel& kernel, const LaunchShape& shape, cl_uint argu
 }
 
 double Session::wait(const cl::Kernel& kernel, const cl::Event& event, Clock::time_point called) {
+  const auto seconds_since = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  };
   LaunchTimes times;
   try {
     queue_.flush();

@@ -8,7 +8,7 @@ namespace pointgi {
 
 namespace {
 
-constexpr const char* samples_key = "render.spp=";
+constexpr const char* samples_text = "render.spp=";
 
 /// The stage that takes time for each sample.
 constexpr const char* picture_stage = "render";
@@ -16,7 +16,7 @@ constexpr const char* picture_stage = "render";
 std::vector<std::string> light_overrides(const MeasuredRun& run) {
   std::vector<std::string> all;
   for (const std::string& text : run.setting.overrides)
-    if (text.rfind(samples_key, 0) != 0) all.push_back(text);
+    if (text.rfind(samples_text, 0) != 0) all.push_back(text);
   return all;
 }
 

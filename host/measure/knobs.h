@@ -6,7 +6,7 @@
 
 namespace pointgi {
 
-inline constexpr char method_key[] = "radiosity.method";
+inline constexpr char method_key[] = "radiosity.method", samples_key[] = "render.spp";
 
 struct KnobValue {
   std::string text;                   ///< "64"

@@ -6,7 +6,6 @@ namespace pointgi {
 namespace {
 
 constexpr const char* no_method = "none"; ///< of the exchange
-constexpr const char* samples_key = "render.spp";
 
 std::string key_of(const std::string& text) {
   return text.substr(0, text.find('='));

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -52,14 +53,18 @@ std::string written(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// The PNG files that `trade` names, as data URIs by their names.
+/// The PNG files that `trade` names, as data URIs by their names; one that is the same as an earlier one, as settings
+/// that change speed alone have it, as that one's name.
 nlohmann::json pictures_of(const Trade& trade, const std::string& folder) {
   nlohmann::json pictures = nlohmann::json::object();
+  std::map<std::string, std::string> names;
   const auto add = [&](const std::string& name) {
     std::ifstream file(std::filesystem::path(folder) / name, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
     // Whatever else a damaged trade.json may name does not belong in a page that is passed on.
-    if (bytes.rfind("\x89PNG\r\n", 0) == 0) pictures[name] = "data:image/png;base64," + base64(bytes);
+    if (bytes.rfind("\x89PNG\r\n", 0) != 0) return;
+    const auto [first, is_new] = names.emplace(bytes, name);
+    pictures[name] = is_new ? "data:image/png;base64," + base64(bytes) : first->second;
   };
   if (!trade.reference.picture.empty()) add(trade.reference.picture);
   for (const MeasuredRun& run : trade.runs)

@@ -1,30 +1,17 @@
 #include "host/measure/search.h"
-#include "host/measure/finding.h"
-#include "host/measure/front_gain.h"
-#include "host/measure/intervals.h"
+#include "host/measure/candidates.h"
 #include "host/measure/moves.h"
 #include "host/repeats.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 
 namespace pointgi {
 
 namespace {
 
-/// An error that is lost in the reference's noise counts as this one.
-constexpr double least_error = 1e-9;
-
 double seconds_of(const MeasuredRun& run) {
-  return std::max(run.seconds.value, 1e-6);
-}
-
-/// No less than can be told of it: what is lost in the reference's noise is not infinitely better than other runs.
-double error_of(const MeasuredRun& run) {
-  constexpr double share_told = 0.25; // of half of the interval
-  return std::max({run.error.value, share_told * 0.5 * (run.error.high - run.error.low), least_error});
+  return point_of(run).seconds;
 }
 
 /// A run may take this long [s] whatever the budget: its kernels may have to be built.
@@ -44,8 +31,8 @@ public:
     const double share =
         std::max(options_.longest_share, 0.5 / static_cast<double>(std::max<std::size_t>(1, knobs_.size())));
     longest_ = std::max({share * budget, 3.0 * seconds_of(trade_.runs.front()), least_limit});
-    const bool whole = choose_start() && singles() && confirm_rises() && combinations(&Search::best_candidates) &&
-                       repeats(true) && combinations(&Search::near_candidates) && repeats(false);
+    const bool whole = choose_start() && singles() && confirm_rises() && combinations(best_candidates) &&
+                       repeats(true) && combinations(near_candidates) && repeats(false);
     mark_front(trade_);
     if (!lines_.empty()) tell_curves();
     return whole;
@@ -101,17 +88,6 @@ private:
     return world_.kept ? std::max(0.0, seconds - world_.kept(run)) : seconds;
   }
 
-  struct Line {
-    const Knob* knob;
-    std::vector<std::size_t> runs;               ///< in the order of the values
-    std::vector<std::string> values;             ///< of the runs
-    std::map<std::size_t, std::size_t> of_value; ///< the run of a value, by its place
-    std::vector<std::string> skipped;
-    std::size_t next = 0; ///< the place of the value that is to be measured now
-    double cost = 0.0;    ///< of its first measurement, foretold
-    bool ended = false;   ///< dearer values would not fit either
-  };
-
   MeasuredRun run_of(const Knob& knob, const KnobValue& value) const {
     MeasuredRun run;
     run.setting.knob = knob.name;
@@ -131,7 +107,7 @@ private:
   }
 
   /// How long the next value of a knob will take, by those before it.
-  double next_seconds(const Line& line) const {
+  double next_seconds(const KnobLine& line) const {
     constexpr double usual_growth = 1.5, least_step = 1.5;
     std::vector<std::pair<std::string, double>> known;
     for (std::size_t i = 0; i < line.runs.size(); ++i)
@@ -158,7 +134,7 @@ private:
   }
 
   /// What the next value of a knob costs.
-  void foretell(Line& line) const {
+  void foretell(KnobLine& line) const {
     const Knob& knob = *line.knob;
     if (line.next >= knob.values.size()) return;
     const MeasuredRun run = run_of(knob, knob.values[line.next]);
@@ -167,7 +143,7 @@ private:
 
   /// How much later than its cost says a value's turn comes: knobs that the scene's own method reads come first, those
   /// of methods that are far from the front and those for which other kernels have to be built come last.
-  double patience(const Line& line) const {
+  double patience(const KnobLine& line) const {
     constexpr double soon = 1.0, later = 1.5, last = 4.0, far = 0.5; // of a logarithm
     const Knob& knob = *line.knob;
     if (knob.is_of_program()) return last;
@@ -178,7 +154,7 @@ private:
     return line.runs.empty() || std::any_of(line.runs.begin(), line.runs.end(), is_near) ? later : last;
   }
 
-  bool single(Line& line, double reserve) {
+  bool single(KnobLine& line, double reserve) {
     foretell(line); // what was kept may have made room since
     const std::size_t place = line.next++;
     const KnobValue& value = line.knob->values[place];
@@ -203,13 +179,13 @@ private:
   bool singles() {
     const double reserve = (1.0 - options_.singles_share) * world_.left();
     for (const Knob& knob : knobs_) {
-      Line line{&knob, {}, {}, {}, {}};
+      KnobLine line{&knob, {}, {}, {}, {}};
       foretell(line);
       lines_.push_back(std::move(line));
     }
     for (;;) {
-      Line* next = nullptr;
-      for (Line& line : lines_)
+      KnobLine* next = nullptr;
+      for (KnobLine& line : lines_)
         if (line.next < line.knob->values.size() &&
             (next == nullptr || patience(line) * line.cost < patience(*next) * next->cost))
           next = &line;
@@ -221,7 +197,7 @@ private:
 
   /// Where the error rises against theory, that may be chance of one seed: others tell.
   bool confirm_rises() {
-    for (const Line& line : lines_)
+    for (const KnobLine& line : lines_)
       for (std::size_t i = 1; i < line.runs.size() && line.knob->falls; ++i) {
         const std::size_t before = line.runs[i - 1], after = line.runs[i];
         while (rises(trade_.runs[before], trade_.runs[after], world_.change) &&
@@ -230,139 +206,15 @@ private:
             MeasuredRun& run = trade_.runs[at];
             if (run.repeats.size() >= options_.repeats) continue;
             if (seconds_of(run) > std::min(longest_, 0.5 * world_.left())) return true;
+            const std::size_t known = run.repeats.size();
             if (!world_.measure(run, world_.left())) return false;
+            if (run.repeats.size() == known) return true; // the time was over
           }
       }
     return true;
   }
 
-  static TradePoint point_of(const MeasuredRun& run) { return {seconds_of(run), error_of(run)}; }
-
-  std::vector<TradePoint> points() const {
-    std::vector<TradePoint> all;
-    for (const MeasuredRun& run : trade_.runs)
-      if (run.refused.empty() && !run.repeats.empty()) all.push_back(point_of(run));
-    return all;
-  }
-
-  double behind_of(const MeasuredRun& run) const { return behind(point_of(run), points()); }
-
-  struct Candidate {
-    MeasuredRun run;
-    TradePoint foretold;
-    double cost = 0.0; ///< of a first measurement; asked once, as a scene may be read for it
-  };
-
-  /// The run that shows what a knob's value does alone; nullptr: there is none.
-  const MeasuredRun* shown(const Line& line, std::size_t value) const {
-    const auto at = line.of_value.find(value);
-    return at != line.of_value.end() && trade_.runs[at->second].refused.empty() ? &trade_.runs[at->second] : nullptr;
-  }
-
-  /// The run that shows what the value does that a setting has, but for that value.
-  const MeasuredRun* shown(const Line& line, const Overrides& overrides) const {
-    if (const auto value = value_in(overrides, *line.knob)) return shown(line, *value);
-    // None of the knob's: the scene's own, which the start has as well, or that of a method the scene has not chosen.
-    if (line.knob->method.empty()) return value_in(start().setting.overrides, *line.knob) ? nullptr : &start();
-    for (const Line& other : lines_)
-      for (const auto& [value, at] : other.of_value)
-        if (other.knob->key == method_key && other.knob->values[value].text == line.knob->method)
-          return trade_.runs[at].refused.empty() ? &trade_.runs[at] : nullptr;
-    return nullptr;
-  }
-
-  /// By how much the times of one setting differ, relative.
-  double scatter() const { return std::max(options_.steady, 2.0 * time_deviation(trade_)); }
-
-  /// The setting of a run with another value of a knob: the time and the error change by what the knob alone has shown.
-  std::optional<Candidate> moved(const MeasuredRun& from, const Line& line, std::size_t place) const {
-    const Knob& knob = *line.knob;
-    const KnobValue& value = knob.values[place];
-    const std::string& method = own().setting.method;
-    if (!goes_with(from.setting.overrides, knob, value, method)) return std::nullopt;
-    const MeasuredRun *after = shown(line, place), *before = shown(line, from.setting.overrides);
-    if (after == nullptr || before == nullptr) return std::nullopt;
-    Candidate candidate;
-    candidate.run.setting.overrides = with_value(from.setting.overrides, knob, value, knobs_, method);
-    candidate.run.name =
-        name_about(candidate.run.setting.overrides, start().setting.overrides, start().name, knobs_, method);
-    constexpr double least_left = 0.3; // of a sum that would be less
-    const double of_from = error_of(from), of_after = error_of(*after), of_before = error_of(*before);
-    // What a cheaper value adds it adds to any setting. What a dearer one takes away may be little in one that has
-    // less.
-    const double error = of_after > of_before
-                             ? of_from + of_after - of_before
-                             : std::max(of_from + of_after - of_before, of_from * of_after / of_before);
-    double seconds = seconds_of(*after) - seconds_of(*before);
-    if (std::fabs(seconds) < scatter() * seconds_of(*before)) seconds = 0.0; // may be chance
-    candidate.foretold = {std::max(seconds_of(from) + seconds, least_left * seconds_of(from)), error};
-    return candidate;
-  }
-
-  /// The settings a knob away from those on and near the front that have not been measured, of a cost of `most` or
-  /// less.
-  std::vector<Candidate> neighbours(double most) const {
-    constexpr double near = 0.25; // of a logarithm
-    std::set<Overrides> known;
-    for (const MeasuredRun& run : trade_.runs)
-      known.insert(run.setting.overrides);
-    const std::vector<TradePoint> measured = points();
-    std::vector<Candidate> all;
-    for (const MeasuredRun& from : trade_.runs) {
-      if (!from.refused.empty() || behind(point_of(from), measured) > near) continue;
-      for (const Line& line : lines_)
-        for (std::size_t v = 0; v < line.knob->values.size() && !line.knob->is_of_several_keys; ++v)
-          if (auto candidate = moved(from, line, v);
-              candidate && known.insert(candidate->run.setting.overrides).second) {
-            candidate->cost = cost_of(candidate->run, candidate->foretold.seconds);
-            if (candidate->cost <= most) all.push_back(std::move(*candidate));
-          }
-    }
-    return all;
-  }
-
-  /// One after the other that which is foretold to gain most area of the trade a second that it costs, the ones before
-  /// it being taken to come out as foretold; what is ahead by less than times scatter gains nothing.
-  std::vector<Candidate> best_candidates(double most) const {
-    std::vector<Candidate> all = neighbours(most), chosen;
-    std::vector<TradePoint> measured = points();
-    constexpr double beyond = 2.0; // what the measured ones reach
-    TradePoint worst{0.0, 0.0};
-    for (const TradePoint& point : measured)
-      worst = {std::max(worst.seconds, beyond * point.seconds), std::max(worst.error, beyond * point.error)};
-    const double least_gain = std::log1p(options_.steady);
-    while (chosen.size() < options_.candidates) {
-      const Candidate* best = nullptr;
-      double most_gained = 0.0;
-      for (const Candidate& candidate : all) {
-        if (behind(candidate.foretold, measured) > -least_gain) continue;
-        const double gained = area_gained(candidate.foretold, measured, worst) / std::max(candidate.cost, 1e-6);
-        if (gained > most_gained) best = &candidate, most_gained = gained;
-      }
-      if (best == nullptr) break;
-      measured.push_back(best->foretold);
-      chosen.push_back(*best);
-    }
-    return chosen;
-  }
-
-  /// Those nearest to the front: what is foretold may be off by some.
-  std::vector<Candidate> near_candidates(double most) const {
-    constexpr double hopeless = 0.7; // twice as slow and as far off as the front
-    const std::vector<TradePoint> measured = points();
-    std::vector<std::pair<double, Candidate>> ranked;
-    for (Candidate& candidate : neighbours(most))
-      if (const double rank = std::max(0.0, behind(candidate.foretold, measured)); rank <= hopeless)
-        ranked.emplace_back(rank, std::move(candidate));
-    std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
-      return a.first != b.first ? a.first < b.first : a.second.cost < b.second.cost;
-    });
-    if (ranked.size() > options_.candidates) ranked.resize(options_.candidates);
-    std::vector<Candidate> chosen;
-    for (auto& [rank, candidate] : ranked)
-      chosen.push_back(std::move(candidate));
-    return chosen;
-  }
+  double behind_of(const MeasuredRun& run) const { return behind(point_of(run), points_of(trade_)); }
 
   /// The better half of the runs at these places.
   std::vector<std::size_t> better_half(std::vector<std::size_t> places) const {
@@ -388,7 +240,19 @@ private:
     return seconds;
   }
 
-  bool combinations(std::vector<Candidate> (Search::*candidates)(double) const) {
+  TriedKnobs tried() const {
+    return {trade_,
+            knobs_,
+            lines_,
+            start_,
+            options_.steady,
+            options_.candidates,
+            [this](const MeasuredRun& run, double seconds) { return cost_of(run, seconds); }};
+  }
+
+  using Candidates = std::vector<Candidate> (*)(const TriedKnobs&, double);
+
+  bool combinations(Candidates candidates) {
     constexpr double most_for_repeats = 0.5, little = 0.25;
     // All are compared with the scene's own.
     if (seconds_of(own()) < little * world_.left() && !again(0)) return false;
@@ -397,7 +261,7 @@ private:
       const double reserve = std::min(most_reserved, seconds_of_second_runs());
       std::vector<std::size_t> places;
       const std::size_t before = trade_.runs.size();
-      for (const Candidate& candidate : (this->*candidates)(world_.left() - reserve)) {
+      for (const Candidate& candidate : candidates(tried(), world_.left() - reserve)) {
         constexpr double off = 1.5; // it may take longer than foretold
         const double most = world_.left() - reserve;
         if (candidate.cost > most) continue;
@@ -433,7 +297,7 @@ private:
 
   void tell_curves() {
     trade_.knobs.clear();
-    for (const Line& line : lines_) {
+    for (const KnobLine& line : lines_) {
       KnobCurve curve{line.knob->name, {}, line.knob->falls, {}};
       if (start_ != 0 && line.knob->left_out.empty() && !line.knob->is_of_several_keys) curve.about = start().name;
       for (const std::size_t at : line.runs)
@@ -453,7 +317,7 @@ private:
   const SearchOptions& options_;
   double longest_ = std::numeric_limits<double>::infinity();
   std::size_t start_ = 0; ///< the run about which knobs are turned
-  std::vector<Line> lines_;
+  std::vector<KnobLine> lines_;
 };
 
 } // namespace

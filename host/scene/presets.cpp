@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace pointgi {
 
@@ -28,6 +29,17 @@ std::vector<Preset> read_presets() {
     all.push_back({row.need_text("name", "a name"), row.need_number("samples", factor),
                    row.need_number("epsilon", factor), row.need_number("directions", factor),
                    static_cast<int>(row.need_number("point_light_samples", factor)), row.need_number("error", factor)});
+  }
+  return all;
+}
+
+std::map<std::string, double> read_least_errors() {
+  const std::string name = "presets.toml";
+  const toml::table document = file_named(name);
+  std::map<std::string, double> all;
+  for (const TableReader& row : TableReader(document, name, "").tables("least")) {
+    row.allow_only({"kind", "error"});
+    all[row.need_text("kind", "a kind")] = row.need_number("error", factor);
   }
   return all;
 }
@@ -62,6 +74,12 @@ const std::vector<Preset>& presets() {
 const std::vector<PresetMeasurement>& preset_measurements() {
   static const std::vector<PresetMeasurement> all = read_measurements();
   return all;
+}
+
+double promised_error(const Preset& preset, const std::string& kind) {
+  static const std::map<std::string, double> least_errors = read_least_errors();
+  const auto least = least_errors.find(kind);
+  return least == least_errors.end() ? preset.error : std::max(preset.error, least->second);
 }
 
 std::vector<std::string> preset_names() {

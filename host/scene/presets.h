@@ -14,7 +14,7 @@ struct Preset {
   double epsilon = 1.0;         ///< factor of radiosity.epsilon, which gets no coarser than a draft's coarsest
   double directions = 1.0;      ///< factor of radiosity.directions
   int point_light_samples = 64; ///< radiosity.light_samples of a lit cloud, where the scene does not say
-  double error = 0.0;           ///< relMSE that pictures keep below
+  double error = 0.0;           ///< relMSE that pictures keep below, but for promised_error()
 };
 
 /// A picture by a preset against its path-traced reference.
@@ -31,6 +31,9 @@ struct PresetMeasurement {
 /// From the least accurate to the most.
 const std::vector<Preset>& presets();
 const std::vector<PresetMeasurement>& preset_measurements();
+
+/// relMSE that pictures of a scene of this kind keep below: of some kinds no setting goes below an error of theirs.
+double promised_error(const Preset& preset, const std::string& kind);
 
 std::vector<std::string> preset_names();
 

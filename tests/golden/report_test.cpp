@@ -37,6 +37,7 @@ Trade trade_with_pictures(const TemporaryFolder& folder) {
   write_grey(folder.file("pictures/reference.png"), 100);
   write_grey(folder.file("pictures/directions-64.png"), 117);
   write_grey(folder.file("pictures/directions-512.png"), 102);
+  write_grey(folder.file("pictures/own.png"), 102);
   folder.write("pictures/directions-1.png", "secret");
   return test::small_trade();
 }
@@ -105,7 +106,8 @@ TEST_CASE("a report is one file that holds the measurement and its pictures and 
   CHECK(commands.size() == 5);
   CHECK(commands.at("directions-64") == command_of(trade, trade.runs[1]));
   const nlohmann::json pictures = held(page, "embedded");
-  CHECK(pictures.size() == 3);
+  CHECK(pictures.size() == 4);
+  CHECK(pictures.at("pictures/directions-512.png") == "pictures/own.png"); // the same, kept once
   const std::string start = "data:image/png;base64,iVBORw0KGgo";
   CHECK(pictures.at("pictures/directions-64.png").get<std::string>().substr(0, start.size()) == start);
 

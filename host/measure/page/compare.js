@@ -1,7 +1,10 @@
 "use strict";
 // Two pictures: beside each other, in turn, under a slider, and their difference.
 
-const pictureOf = name => pictures[name === "reference" ? reference.picture : (runNamed(name) || {}).picture];
+function pictureOf(name) {
+  const found = pictures[name === "reference" ? reference.picture : (runNamed(name) || {}).picture];
+  return found && !found.startsWith("data:") ? pictures[found] : found; // the name of the same one
+}
 const captionOf = name => {
   if (name === "reference") return `the reference: ${reference.source}`;
   const run = runNamed(name);
