@@ -13,9 +13,9 @@ using ErrorChange = std::function<Estimate(const MeasuredRun& before, const Meas
 /// a twentieth of it, as the noise of light is alike over whole surfaces and intervals know nothing of that.
 bool rises(const MeasuredRun& before, const MeasuredRun& after, const ErrorChange& change = {});
 
-/// "falls", or where the error of the curve's runs does not fall from value to value and why, with what theory says;
-/// and the values that were skipped. `change`, if given, tells more than the errors' own intervals: runs of one seed
-/// have much in common.
+/// Of a knob whose error falls by theory "falls", and from which value on that is little, or where it does not and why;
+/// of others which value has the least error. Then the values that were skipped. `change`, if given, is used where it
+/// tells more than the errors' own intervals: runs of one seed have much in common.
 std::string finding_of(const Trade& trade, const Knob& knob, const KnobCurve& curve,
                        const std::vector<std::string>& skipped, const ErrorChange& change = {});
 

@@ -207,6 +207,8 @@ private:
     maker_.set_size(size->first, size->second);
     trade_.width = size->first;
     trade_.height = size->second;
+    trade_.full_width = render.width;
+    trade_.full_height = render.height;
     if (made_.first.channels.empty()) {
       maker_.trace(1, first_seed(), inner_); // builds the kernels
       const double most = std::min(reference_share * options_.budget, 0.5 * left());
@@ -367,11 +369,13 @@ private:
       write_png(made.picture, path_of(run.picture), exposure_);
     }
     run.repeats.push_back(made.seconds);
-    const double before = run.seconds.value;
     run.seconds = estimate_of_repeats(run.repeats);
-    // The stages of the repetition nearest to the median.
-    if (count == 0 || std::fabs(made.seconds - run.seconds.value) <= std::fabs(before - run.seconds.value))
-      run.stages = made.stages;
+    for (const auto& [stage, seconds] : made.stages)
+      run.stages.emplace(stage, 0.0);
+    for (auto& [stage, mean] : run.stages) {
+      const auto one = made.stages.find(stage);
+      add_to_mean(mean, one == made.stages.end() ? 0.0 : one->second, count);
+    }
     run.memory_bytes = std::max(run.memory_bytes, made.memory_bytes);
   }
 

@@ -106,9 +106,20 @@ std::string name_about(const Overrides& overrides, const Overrides& start, const
     return std::any_of(overrides.begin(), overrides.end(),
                        [&](const std::string& text) { return key_of(text) == key; });
   };
-  for (const std::string& text : start)
-    if (!has_key(key_of(text)) && !is_of_another_method(key_of(text))) return name_of_overrides(overrides);
+  /// What the scene has for a key, as an override says it; empty: it is not one of the knobs' values.
+  const auto own_of = [&](const std::string& key) {
+    for (const Knob& knob : knobs)
+      for (const KnobValue& value : knob.values)
+        if (knob.key == key && value.in_scene) return key + "=" + value.text;
+    return std::string();
+  };
   Overrides besides;
+  for (const std::string& text : start) {
+    const std::string key = key_of(text);
+    if (has_key(key) || is_of_another_method(key)) continue;
+    if (own_of(key).empty()) return name_of_overrides(overrides);
+    besides.push_back(own_of(key));
+  }
   for (const std::string& text : overrides)
     if (!has(start, text)) besides.push_back(text);
   if (start.empty() || besides.empty()) return name_of_overrides(overrides);

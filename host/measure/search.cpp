@@ -39,17 +39,19 @@ public:
   }
 
 private:
-  /// The run of that name, as it is already or added.
-  std::size_t place_of(const MeasuredRun& run) {
-    for (std::size_t i = 0; i < trade_.runs.size(); ++i)
-      if (trade_.runs[i].name == run.name) return i;
-    trade_.runs.push_back(run);
-    return trade_.runs.size() - 1;
+  /// The place of the run that has the same settings, whatever its name.
+  std::size_t known_place(const MeasuredRun& run) const {
+    const auto is_same = [&](const MeasuredRun& one) { return one.setting.overrides == run.setting.overrides; };
+    return static_cast<std::size_t>(std::find_if(trade_.runs.begin(), trade_.runs.end(), is_same) -
+                                    trade_.runs.begin());
   }
 
-  bool is_known(const MeasuredRun& run) const {
-    return std::any_of(trade_.runs.begin(), trade_.runs.end(),
-                       [&](const MeasuredRun& other) { return other.name == run.name; });
+  bool is_known(const MeasuredRun& run) const { return known_place(run) < trade_.runs.size(); }
+
+  /// The same, the run being added where there is none.
+  std::size_t place_of(const MeasuredRun& run) {
+    if (!is_known(run)) trade_.runs.push_back(run);
+    return known_place(run);
   }
 
   /// A first repetition, where there is none. A run that has never been measured does not stay.
@@ -303,6 +305,8 @@ private:
       for (const std::size_t at : line.runs)
         curve.runs.push_back(trade_.runs[at].name);
       curve.values = line.values;
+      for (const KnobValue& value : line.knob->values)
+        if (value.in_scene) curve.own = value.text;
       std::vector<std::string> skipped = line.skipped;
       for (std::size_t v = line.next; v < line.knob->values.size(); ++v) // interrupted before
         skipped.push_back(line.knob->values[v].text);

@@ -55,15 +55,22 @@ std::vector<std::size_t> mark_front(Trade& trade) {
   return front;
 }
 
+double full_seconds(const Trade& trade, const MeasuredRun& run) {
+  const auto render = run.stages.find("render");
+  const double pixels = double{1.0} * trade.width * trade.height;
+  if (render == run.stages.end() || pixels == 0.0) return run.seconds.value;
+  return run.seconds.value + render->second * (double{1.0} * trade.full_width * trade.full_height / pixels - 1.0);
+}
+
 std::optional<std::size_t> fastest_within_error(const Trade& trade, double error) {
   return best(trade, [&](const MeasuredRun& run, const MeasuredRun* so_far) {
-    return run.error.value <= error && (so_far == nullptr || run.seconds.value < so_far->seconds.value);
+    return run.error.value <= error && (so_far == nullptr || full_seconds(trade, run) < full_seconds(trade, *so_far));
   });
 }
 
 std::optional<std::size_t> most_accurate_within(const Trade& trade, double seconds) {
   return best(trade, [&](const MeasuredRun& run, const MeasuredRun* so_far) {
-    return run.seconds.value <= seconds && (so_far == nullptr || run.error.value < so_far->error.value);
+    return full_seconds(trade, run) <= seconds && (so_far == nullptr || run.error.value < so_far->error.value);
   });
 }
 

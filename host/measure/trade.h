@@ -31,7 +31,7 @@ struct MeasuredRun {
   std::vector<double> repeats;          ///< seconds of each repetition, from the prepared cloud to the picture, cold:
                                         ///< with a visibility map made anew
   Estimate seconds;                     ///< median of `repeats`; see set_time_intervals (host/measure/intervals.h)
-  std::map<std::string, double> stages; ///< seconds of each stage, of the median repetition
+  std::map<std::string, double> stages; ///< seconds of each stage, the mean over the repetitions
   std::uint64_t memory_bytes = 0;       ///< device_peak_bytes of the run
   Estimate error;                       ///< relMSE against the reference, whose own noise is taken off; low may be < 0
   double noise = std::numeric_limits<double>::infinity(); ///< of `error`, what the pixels' variances tell; infinite: of
@@ -52,6 +52,7 @@ struct KnobCurve {
   std::string finding;           ///< "falls", or where it does not and why, for the reader; without runs, why not
   std::string about = {};        ///< the run whose other settings they have; empty: the scene's own
   std::vector<std::string> values = {}; ///< of the knob, of each run: "64"
+  std::string own = {};                 ///< the scene's own value, where it is one of the knob's
 };
 
 struct TradeReference {
@@ -66,7 +67,8 @@ struct Trade {
   std::string version, scene, device, date; ///< date: YYYY-MM-DD
   std::vector<std::string> overrides;       ///< that all runs have besides their own, as --set takes them
   std::string state;                        ///< hash of the files of the scene, by which a resumed one is known
-  int width = 0, height = 0;
+  int width = 0, height = 0;                ///< pixels of the pictures that are measured
+  int full_width = 0, full_height = 0;      ///< of those that the scene asks for
   double budget_seconds = 0.0, spent_seconds = 0.0;
   double prepare_seconds = 0.0; ///< of loading the clouds and building the octree, which no run's seconds hold
   TradeReference reference;
@@ -78,7 +80,12 @@ struct Trade {
 /// `on_front`.
 std::vector<std::size_t> mark_front(Trade& trade);
 
-/// The fastest run whose error is at most `error`, and the most accurate that takes at most `seconds`; absent: none.
+/// Seconds of the run's setting in a picture of full_width x full_height: the stage "render" grows with the pixels, and
+/// the light does not.
+double full_seconds(const Trade& trade, const MeasuredRun& run);
+
+/// Of a picture of that size the fastest run whose error is at most `error`, and the most accurate that takes at most
+/// `seconds`; absent: none.
 std::optional<std::size_t> fastest_within_error(const Trade& trade, double error);
 std::optional<std::size_t> most_accurate_within(const Trade& trade, double seconds);
 

@@ -47,8 +47,8 @@ json object_of(const MeasuredRun& run) {
 }
 
 json object_of(const KnobCurve& knob) {
-  return {{"knob", knob.knob},       {"runs", knob.runs},   {"falls", knob.falls},
-          {"finding", knob.finding}, {"about", knob.about}, {"values", knob.values}};
+  return {{"knob", knob.knob},   {"runs", knob.runs},     {"falls", knob.falls}, {"finding", knob.finding},
+          {"about", knob.about}, {"values", knob.values}, {"own", knob.own}};
 }
 
 /// A place in the file that is read, by which errors name it: "runs.3.error".
@@ -143,8 +143,8 @@ MeasuredRun run_of(const Reader& in) {
 }
 
 KnobCurve knob_of(const Reader& in) {
-  return {in["knob"].text(),    in["runs"].texts(), in["falls"].flag(),
-          in["finding"].text(), in["about"].text(), in["values"].texts()};
+  return {in["knob"].text(),  in["runs"].texts(),   in["falls"].flag(), in["finding"].text(),
+          in["about"].text(), in["values"].texts(), in["own"].text()};
 }
 
 Trade trade_of(const Reader& in) {
@@ -158,6 +158,8 @@ Trade trade_of(const Reader& in) {
   trade.state = in["state"].text();
   trade.width = in["width"].side();
   trade.height = in["height"].side();
+  trade.full_width = in["full_width"].side();
+  trade.full_height = in["full_height"].side();
   trade.budget_seconds = in["budget_seconds"].number();
   trade.spent_seconds = in["spent_seconds"].number();
   trade.prepare_seconds = in["prepare_seconds"].number();
@@ -179,6 +181,8 @@ std::string json_of(const Trade& trade) {
               {"state", trade.state},
               {"width", trade.width},
               {"height", trade.height},
+              {"full_width", trade.full_width},
+              {"full_height", trade.full_height},
               {"budget_seconds", json_number(trade.budget_seconds)},
               {"spent_seconds", json_number(trade.spent_seconds)},
               {"prepare_seconds", json_number(trade.prepare_seconds)},

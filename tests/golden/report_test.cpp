@@ -159,10 +159,10 @@ TEST_CASE("a browser shows the figures of the measurement and the settings that 
     }
     CHECK(rows == front.size());
 
-    CHECK(attribute(page, "data-sentence=\"half-time\"", "data-run") == name_at(most_accurate_within(trade, 1.0)));
+    CHECK(attribute(page, "data-sentence=\"half-time\"", "data-run") == name_at(most_accurate_within(trade, 0.5 * full_seconds(trade, trade.runs[0]))));
     CHECK(attribute(page, "data-sentence=\"half-error\"", "data-run") ==
           name_at(fastest_within_error(trade, 0.5 * own.value)));
-    CHECK(attribute(page, "id=\"for-error\"", "data-run") == name_at(fastest_within_error(trade, own.value)));
+    CHECK(attribute(page, "id=\"for-error\"", "data-run") == name_at(fastest_within_error(trade, own.value / 2)));
     CHECK(text_between(page, "<span id=\"scene\"", "</h1>") == trade.scene.substr(trade.scene.rfind('/') + 1));
     CHECK(text_between(page, "data-refused=\"directions-65536\"", "</tr>").find("more memory than the device has") !=
           std::string::npos);

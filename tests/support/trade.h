@@ -34,6 +34,8 @@ inline Trade small_trade() {
   trade.state = "0123";
   trade.width = 16;
   trade.height = 12;
+  trade.full_width = 32;
+  trade.full_height = 24;
   trade.budget_seconds = 300.0;
   trade.spent_seconds = 290.0;
   trade.reference = {"path tracer", "pictures/reference.png", 1e-5, 90.0};

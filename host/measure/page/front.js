@@ -15,7 +15,7 @@ function drawFront() {
   for (const tick of logTicks(errors[0], errors[1], 9))
     out += line(left, y(tick), right, y(tick), "grid") + text(left - 6, y(tick) + 4, tickText(tick), "tick", "end");
   out += line(left, bottom, right, bottom, "axis") + line(left, top, left, bottom, "axis");
-  out += text((left + right) / 2, height - 6, "seconds of a picture", "tick", "middle");
+  out += text((left + right) / 2, height - 6, `seconds of a picture of ${trade.width} x ${trade.height} pixels`, "tick", "middle");
   out += text(4, 14, "error (relMSE)", "tick");
 
   const named = front.map((run, i) => ({at: place(run), words: width < 560 ? [`${i + 1}`] : [`${i + 1} ${run.name}`, `${i + 1}`]}));

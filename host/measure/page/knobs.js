@@ -2,7 +2,8 @@
 // A curve a knob: error and seconds against its values.
 
 function drawKnobs() {
-  const box = byId("knobs"), curves = trade.knobs.filter(curve => curve.runs.length), left = trade.knobs.filter(curve => !curve.runs.length);
+  const isCurve = curve => curve.runs.length > 1;
+  const box = byId("knobs"), curves = trade.knobs.filter(isCurve), left = trade.knobs.filter(curve => !isCurve(curve));
   if (curves.length && box.children.length === 0)
     box.innerHTML = curves.map(curve => `<article class="knob" data-knob="${esc(curve.knob)}">` +
       `<h3>${esc(curve.knob)}${curve.about ? ` <small>about ${esc(curve.about)}</small>` : ""}</h3><div class="plot"></div>` +
@@ -12,7 +13,7 @@ function drawKnobs() {
     plot.innerHTML = knobChart(curves[i], Math.max(240, plot.clientWidth));
     reachable(plot);
   });
-  if (curves.length === 0) box.innerHTML = "<p>No knob was measured alone.</p>";
+  if (curves.length === 0) box.innerHTML = "<p>Of no knob two values were measured.</p>";
   byId("knobs-left").innerHTML = left.length === 0 ? "" : "<h3>Left out</h3><ul>" +
     left.map(curve => `<li><code>${esc(curve.knob)}</code>: ${esc(curve.finding.replace(/^left out: /, ""))}</li>`).join("") + "</ul>";
 }
@@ -54,7 +55,7 @@ function knobChart(curve, width) {
   const bottom = panel(middle + gap + 8, "seconds", times, run => run.seconds);
   all.forEach((run, i) => {
     const turn = slanted ? ` transform="rotate(-40 ${r(x(i))} ${r(bottom + 14)})"` : "";
-    out += `<text x="${r(x(i) + (slanted ? 4 : 0))}" y="${r(bottom + 14)}" class="tick" text-anchor="${slanted ? "end" : "middle"}"${turn}>` +
+    out += `<text x="${r(x(i) + (slanted ? 4 : 0))}" y="${r(bottom + 14)}" class="tick${value(run) === curve.own ? " own" : ""}" text-anchor="${slanted ? "end" : "middle"}"${turn}>` +
       `${esc(value(run))}</text>`;
   });
   return `<svg viewBox="0 0 ${width} ${r(bottom + foot)}" role="group" aria-label="Error and seconds against ${esc(curve.knob)}; ` +

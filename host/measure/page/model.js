@@ -10,6 +10,7 @@ const runNamed = name => runs.find(run => run.name === name);
 const byId = id => document.getElementById(id);
 
 const own = measured.find(run => run.setting.overrides.length === 0);
+const cheap = measured.find(run => run.name === "cheap");
 const front = measured.filter(run => run.on_front).sort((a, b) => a.seconds.value - b.seconds.value);
 
 /// Text as HTML shows it.
@@ -34,13 +35,19 @@ const errorText = error => isTold(error) || !isFinite(error.value) ? figure(erro
 const errorRange = error => !isTold(error) ? "" : error.low > 0 ? `${figure(error.low)} to ${figure(error.high)}` : `up to ${figure(error.high)}`;
 const errorWithRange = error => errorText(error) + (isTold(error) ? ` (${errorRange(error)})` : "");
 const secondsRange = time => `${figure(time.low)} to ${figure(time.high)}`;
+/// Of a picture of the scene's own size: the stage render grows with the pixels, and the light does not.
+const fullPixels = trade.full_width * trade.full_height, isFull = fullPixels === trade.width * trade.height;
+const fullSize = `${trade.full_width} x ${trade.full_height}`;
+const fullSeconds = run => run.seconds.value + (run.stages.render || 0) * (fullPixels / (trade.width * trade.height) - 1);
+/// What the scene has of the knobs that were measured.
+const ownValues = trade.knobs.filter(curve => curve.own && curve.runs.length).map(curve => `${curve.knob} ${curve.own}`);
 const settingsText = run => run.setting.overrides.length ? run.setting.overrides.join("  ") : "the scene’s own setting";
 /// Seconds with a visibility map that an earlier run has kept; empty where it was not measured.
 const warmText = run => run.warm_seconds > 0 ? seconds(run.warm_seconds) : "";
 
 /// The same choice as fastest_within_error and most_accurate_within of host/measure/trade.h; undefined: no run.
-const fastestWithinError = error => least(measured.filter(run => run.error.value <= error), run => run.seconds.value);
-const mostAccurateWithin = limit => least(measured.filter(run => run.seconds.value <= limit), run => run.error.value);
+const fastestWithinError = error => least(measured.filter(run => run.error.value <= error), fullSeconds);
+const mostAccurateWithin = limit => least(measured.filter(run => fullSeconds(run) <= limit), run => run.error.value);
 const least = (candidates, by) => [...candidates].sort((a, b) => by(a) - by(b))[0];
 
 /// Methods and stages have colours by their places in these lists; methods have marks, too, for who sees no colours.

@@ -8,24 +8,28 @@ function drawHead() {
   const noise = reference.own_noise > 0 ? `; its own noise, ${figure(reference.own_noise)}, is taken off every error` : "";
   const facts = [
     ["Scene", [trade.scene, ...(trade.overrides || [])].join("  ")], ["Device", trade.device], ["Date", `${trade.date}, pointgi ${trade.version}`],
-    ["Picture", `${trade.width} x ${trade.height} pixels`],
+    ["Picture", `${trade.width} x ${trade.height} pixels${isFull ? "" : `; the scene asks for ${fullSize}`}`],
     ["Reference", `${reference.source}${reference.seconds > 0 ? `, ${seconds(reference.seconds)}` : ""}${noise}`],
     ["Budget", `${seconds(trade.budget_seconds)}, of which ${seconds(trade.spent_seconds)} were spent; ${runs.length} settings`],
   ];
+  if (ownValues.length) facts.push(["The scene’s own", ownValues.join(", ")]);
+  if (cheap) facts.push(["Run cheap", settingsText(cheap)]);
   byId("facts").innerHTML = facts.map(([title, words]) => `<div><dt>${title}</dt><dd>${esc(words)}</dd></div>`).join("");
   const terms = [
     ["seconds", "From the prepared cloud to the picture, by a process that has its kernels: the median of the repetitions, below it the interval that holds it in 95 of 100 measurements. " +
-      "The stage render grows with the pixels of the picture; the others do not depend on them."],
+      `The stage render grows with the pixels of the picture; the others do not depend on them.${isFull ? "" : ` The seconds at ${fullSize} are reckoned by that.`}`],
+    ["runs", "How often the setting was run, each time with another seed."],
     ["error (relMSE)", "As pointgi compare prints it: the mean over the pixels of the squared difference from the reference, relative to the squared reference. A quarter " +
       "of the error is half the difference. The noise of the reference is taken off, so that an interval may reach below 0: the reference cannot tell such an error from none. " +
-      "The interval holds the error in 95 of 100 measurements."],
+      "The interval holds the error in 95 of 100 measurements. Of a single run it is too wide: places differ, not only chances."],
     ["bias", "Difference of the mean of the picture from the mean of the reference, relative."],
     ["SSIM", "Structural similarity with the reference; 1 is the same."],
-    ["seconds, kept map", "Of one more run with the visibility map of an earlier one, where that took much of the time: a second picture of the same scene. The column seconds " +
-      "is of runs that made the map anew."],
+    ...(measured.some(warmText) ? [["seconds, kept map", "Of one more run with the visibility map of an earlier one, where that took much of the time: a second picture of the same scene. The column seconds " +
+      "is of runs that made the map anew."]] : []),
     ["memory", "The most that was in use on the device at a time."],
   ];
   byId("terms").innerHTML = terms.map(([title, words]) => `<dt>${title}</dt><dd>${words}</dd>`).join("");
+  if (!isFull) document.querySelector("label[for=want-seconds]").textContent = `seconds, at most, at ${fullSize}`;
   byId("legend").innerHTML = legend(methods, markSign);
 }
 

@@ -7,11 +7,12 @@ const methodCell = run => `<td class="name"><span class="dot" style="--c:${metho
 const dataOf = run => `data-run="${esc(run.name)}" data-seconds="${run.seconds.value}" data-error="${run.error.value}"`;
 
 function drawBest() {
-  byId("best").innerHTML = "<thead><tr><th class='figure'>#</th><th>run</th><th class='figure'>seconds</th><th class='figure'>error (relMSE)</th>" +
+  byId("best").innerHTML = "<thead><tr><th class='figure'>#</th><th>run</th><th class='figure'>seconds</th>" +
+    (isFull ? "" : `<th class='figure'>at ${fullSize}</th>`) + "<th class='figure'>error (relMSE)</th>" +
     "<th class='figure'>SSIM</th><th class='figure'>memory</th><th>settings</th></tr></thead><tbody>" +
     front.map((run, i) => `<tr ${dataOf(run)}><td class="figure">${i + 1}</td>${nameCell(run)}` +
-      cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
-      cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) +
+      cell(figure(run.seconds.value), secondsRange(run.seconds)) + (isFull ? "" : cell(figure(fullSeconds(run)))) +
+      cell(errorText(run.error), errorRange(run.error)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) +
       `<td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`).join("") + "</tbody>";
 }
 
@@ -47,7 +48,8 @@ const columns = [
   ["bias", "bias", true, run => Math.abs(run.bias)],
   ["ssim", "SSIM", true, run => -run.ssim],
   ["memory", "memory", true, run => run.memory_bytes],
-  ["warm", "seconds, kept map", true, run => run.warm_seconds || Infinity],
+  ["repeats", "runs", true, run => run.repeats.length],
+  ...(measured.some(warmText) ? [["warm", "seconds, kept map", true, run => run.warm_seconds || Infinity]] : []),
   ["settings", "settings", false, run => settingsText(run)],
 ];
 
@@ -61,10 +63,11 @@ function drawAll() {
     `${name === key ? ` aria-sort="${down ? "descending" : "ascending"}"` : ""}><button type="button" data-sort="${name}">${title}</button></th>`);
   const row = run => `<tr ${dataOf(run)} class="${run.name === state.select ? "selected" : ""}">${nameCell(run)}${methodCell(run)}` +
     cell(figure(run.seconds.value), secondsRange(run.seconds)) + cell(errorText(run.error), errorRange(run.error)) +
-    cell(percent(run.bias)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) + cell(warmText(run)) +
+    cell(percent(run.bias)) + cell(similarity(run.ssim)) + cell(bytes(run.memory_bytes)) +
+    cell(run.repeats.length) + (measured.some(warmText) ? cell(warmText(run)) : "") +
     `<td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
   const refused = run => `<tr data-refused="${esc(run.name)}"><td class="name">${esc(run.name)}</td><td>${esc(run.setting.method)}</td>` +
-    `<td colspan="6">not run: ${esc(run.refused)}</td><td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
+    `<td colspan="${columns.length - 3}">not run: ${esc(run.refused)}</td><td class="settings"><code>${esc(settingsText(run))}</code></td></tr>`;
   const focused = document.activeElement && document.activeElement.dataset.sort;
   byId("all").innerHTML = `<thead><tr>${head.join("")}</tr></thead><tbody>${sorted.map(row).join("")}` +
     `${runs.filter(run => run.refused).map(refused).join("")}</tbody>`;

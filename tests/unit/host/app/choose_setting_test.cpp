@@ -21,7 +21,7 @@ Trade trade_of(const std::string& scene) {
   trade.scene = scene;
   trade.device = "a device";
   trade.date = "2026-11-30";
-  trade.width = trade.height = 100;
+  trade.width = trade.height = trade.full_width = trade.full_height = 100;
   const auto add = [&](const std::string& name, const std::vector<std::string>& overrides, double light, double error) {
     MeasuredRun run;
     run.name = name;

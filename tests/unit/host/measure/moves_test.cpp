@@ -80,8 +80,10 @@ TEST_CASE("the cheapest setting of a method, which a run is named by") {
         "cheap_directions-512_spp-2");
   CHECK(name({"caustics.photons=1000", "radiosity.method=none"}) == "cheap_method-none");
   // Photons are the scene's own.
-  CHECK(name({"radiosity.directions=32", "radiosity.method=directions"}) == "directions-32_method-directions");
-  CHECK(name({"radiosity.method=none"}) == "method-none");
+  CHECK(name({"radiosity.directions=32", "radiosity.method=directions"}) == "cheap_photons-9000");
+  CHECK(name({"radiosity.method=none"}) == "cheap_photons-9000_method-none");
+  // The scene's directions are none of the knob's.
+  CHECK(name({"caustics.photons=1000", "radiosity.method=directions"}) == "photons-1000_method-directions");
   CHECK(name_about({"render.spp=2"}, {}, "own", all, "directions") == "spp-2");
 }
 

@@ -248,7 +248,8 @@ TEST_CASE("a curve that rises is told, against theory or not") {
   trade.runs[2].bias = 0.5;
   CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("is off by +50 % and was by -0.1 %"));
   trade.runs[2].error = {0.5, 0.4, 0.6};
-  CHECK(finding_of(trade, knob, curve, {"9"}) == "falls; not measured for want of time: 9");
+  CHECK(finding_of(trade, knob, curve, {"9"}) ==
+        "falls up to 10, and changes by less than a twentieth from there on; not measured for want of time: 9");
   trade.runs[0].error = trade.runs[1].error;
   CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("stays the same"));
   SECTION("what is known of the change tells more than the errors") {
@@ -257,7 +258,7 @@ TEST_CASE("a curve that rises is told, against theory or not") {
         return Estimate{change, change - 0.01, change + 0.01};
       };
     };
-    CHECK(finding_of(trade, knob, curve, {}, by(-0.02)) == "falls");
+    CHECK(finding_of(trade, knob, curve, {}, by(-0.02)) == "falls by less than a twentieth in all");
     CHECK_THAT(finding_of(trade, knob, curve, {}, by(0.03)), Catch::Contains("rises from 0 to 10"));
     CHECK_THAT(finding_of(trade, knob, curve, {}, by(0.02)), Catch::Contains("stays the same")); // a twenty-fifth
   }
@@ -267,6 +268,44 @@ TEST_CASE("a curve that rises is told, against theory or not") {
     trade.runs[1].noise = std::numeric_limits<double>::infinity();
     CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("says why"));
   }
+}
+
+TEST_CASE("of values that differ in kind the best is told") {
+  Trade trade;
+  for (const double error : {1.0, 0.5, 0.51}) {
+    MeasuredRun run;
+    run.name = "k-" + std::to_string(trade.runs.size());
+    run.error = {error, 0.9 * error, 1.1 * error};
+    trade.runs.push_back(run);
+  }
+  Knob knob{"k", "a.k", false, "They differ.", {}};
+  const KnobCurve curve{"k", {"k-0", "k-1", "k-2"}, false, {}, "", {"none", "cones", "fmm"}};
+  CHECK(finding_of(trade, knob, curve, {"all"}) ==
+        "the least error is that of cones; by chance or by less than a twentieth differ fmm. They differ. "
+        "Not measured for want of time: all");
+  trade.runs[0].error = {0.55, 0.5, 0.6};
+  CHECK(finding_of(trade, knob, curve, {}) ==
+        "no value has less error than the others, to within their intervals. They differ.");
+  trade.runs[1].error = {0.1, 0.09, 0.11};
+  CHECK(finding_of(trade, knob, curve, {}) == "the least error is that of cones. They differ.");
+}
+
+TEST_CASE("what two knobs have in common is measured once") {
+  Model model;
+  model.budget = 1000.0;
+  std::vector<Knob> three = knobs();
+  Knob other{"fewest", "b.rays", true, "Noise falls.", {}};
+  other.values = {{"few", {"b.rays=32"}}, {"many", {"b.rays=2048"}}};
+  three.push_back(other);
+  Trade trade;
+  CHECK(search(trade, three, model.world()));
+  std::set<std::vector<std::string>> settings;
+  for (const MeasuredRun& run : trade.runs)
+    CHECK(settings.insert(run.setting.overrides).second);
+  REQUIRE(trade.knobs.size() == 3);
+  CHECK(trade.knobs[2].runs == std::vector<std::string>{trade.knobs[1].runs.front(), trade.knobs[1].runs.back()});
+  CHECK(trade.knobs[2].values == std::vector<std::string>{"few", "many"});
+  CHECK(trade.knobs[1].own == "512");
 }
 
 TEST_CASE("repeats are summed up by their median and range") {
