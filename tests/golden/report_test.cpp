@@ -159,7 +159,8 @@ TEST_CASE("a browser shows the figures of the measurement and the settings that 
     }
     CHECK(rows == front.size());
 
-    CHECK(attribute(page, "data-sentence=\"half-time\"", "data-run") == name_at(most_accurate_within(trade, 0.5 * full_seconds(trade, trade.runs[0]))));
+    CHECK(attribute(page, "data-sentence=\"half-time\"", "data-run") ==
+          name_at(most_accurate_within(trade, 0.5 * full_seconds(trade, trade.runs[0]))));
     CHECK(attribute(page, "data-sentence=\"half-error\"", "data-run") ==
           name_at(fastest_within_error(trade, 0.5 * own.value)));
     CHECK(attribute(page, "id=\"for-error\"", "data-run") == name_at(fastest_within_error(trade, own.value / 2)));
