@@ -21,14 +21,26 @@ std::optional<std::uint64_t> left_of_machine() {
   return std::nullopt;
 }
 
+/// Pages of files in a group's use, which make room when it is needed.
+std::uint64_t file_pages(const char* path, const std::string& prefix) {
+  std::ifstream file(path);
+  std::uint64_t bytes = 0, number = 0;
+  for (std::string key; file >> key >> number;)
+    if (key == prefix + "inactive_file" || key == prefix + "active_file") bytes += number;
+  return bytes;
+}
+
 /// Of a container, by the second version of control groups or by the first.
 std::optional<std::uint64_t> left_of_group() {
-  constexpr const char* files[][2] = {
-      {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"},
-      {"/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"}};
-  for (const auto& [limit_file, use_file] : files) {
+  constexpr const char* groups[][4] = {
+      {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current", "/sys/fs/cgroup/memory.stat", ""},
+      {"/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes",
+       "/sys/fs/cgroup/memory/memory.stat", "total_"}};
+  for (const auto& [limit_file, use_file, stat_file, prefix] : groups) {
     const auto limit = number_in(limit_file), use = number_in(use_file);
-    if (limit && use) return *limit - std::min(*limit, *use);
+    if (!limit || !use) continue;
+    const std::uint64_t held = *use - std::min(*use, file_pages(stat_file, prefix));
+    return *limit - std::min(*limit, held);
   }
   return std::nullopt;
 }

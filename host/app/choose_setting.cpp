@@ -138,6 +138,7 @@ std::optional<std::pair<double, double>> errors_of_kind(const std::string& prese
     if (!range) range.emplace(m.error, m.error);
     range = std::pair(std::min(range->first, m.error), std::max(range->second, m.error));
   }
+  if (range) range->second = std::max(range->second, least_error(kind));
   return range;
 }
 
@@ -166,6 +167,7 @@ PresetChoice choose_by_presets(const std::string& kind, const RenderOptions& opt
     if (m.preset == chosen->name && m.kind == kind)
       goal.light_error =
           std::max({goal.light_error, m.error - m.noise / std::max(1, m.samples), least_light * m.error});
+  goal.light_error = std::max(goal.light_error, least_error(kind));
   goal.light_error_known = errors_of_kind(chosen->name, kind).has_value();
   choice.setting.told = fmt::format("the settings of --quality {} are chosen, {}; `pointgi measure {}` would tell what "
                                     "this scene needs",

@@ -30,25 +30,29 @@ std::string told_of(const GrownPicture& grown, const PictureGoal& goal) {
   return text;
 }
 
-std::uint64_t film_bytes(const api::Prepared& prepared, double pixels) {
+std::uint64_t film_bytes(const api::Prepared& prepared, double pixels, bool has_open_goal) {
   const bool specular = prepared.parts()->ready.lighting.has_specular();
   const bool photons = specular && prepared.parts()->scene.caustics.photons > 0;
-  return static_cast<std::uint64_t>(pixels * static_cast<double>(film_scalars(specular, photons) * sizeof(float)));
+  const double films = has_open_goal ? 2.0 : 1.0;
+  return static_cast<std::uint64_t>(films * pixels *
+                                    static_cast<double>(film_scalars(specular, photons) * sizeof(float)));
 }
 
 /// Before an older picture is replaced by a preview of one that cannot be made.
-void require_film_memory(const PictureRun& run) {
-  if (film_fits(run.prepared, run.pixels)) return;
+void require_film_memory(const PictureRun& run, bool has_open_goal) {
+  if (film_fits(run.prepared, run.pixels, has_open_goal)) return;
   throw Error(ErrorKind::memory,
               fmt::format("a picture that gets better keeps a film of {} in memory, of which {} are available; leave "
                           "out --time, --error and --progressive, or set a smaller --size",
-                          megabytes(film_bytes(run.prepared, run.pixels)), megabytes(available_memory().value_or(0))));
+                          megabytes(film_bytes(run.prepared, run.pixels, has_open_goal)),
+                          megabytes(available_memory().value_or(0))));
 }
 
 } // namespace
 
-bool film_fits(const api::Prepared& prepared, double pixels) {
-  return film_bytes(prepared, pixels) <= available_memory().value_or(std::numeric_limits<std::uint64_t>::max());
+bool film_fits(const api::Prepared& prepared, double pixels, bool has_open_goal) {
+  return film_bytes(prepared, pixels, has_open_goal) <=
+         available_memory().value_or(std::numeric_limits<std::uint64_t>::max());
 }
 
 MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output) {
@@ -83,7 +87,7 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, c
   RunControl in_time = run.control;
   in_time.stop = [&] { return user_stops() || (goal.until && stages.seconds() > *goal.until); };
   try {
-    require_film_memory(run);
+    require_film_memory(run, goal.is_open());
     api::require_memory(run.prepared, {true, run.by_paths}); // or an older picture would be lost to a first one
     PreviewCost cost;
     if (!run.by_paths) {

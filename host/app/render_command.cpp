@@ -163,11 +163,15 @@ double seconds_of_stages(const api::Prepared& prepared, const api::FilmOptions& 
 void tell_expected(const RenderOptions& options, const api::Prepared& prepared, const api::FilmOptions& film,
                    const PreviewCost& preview, const RunControl& run) {
   constexpr double least_for_estimate = 5.0; // which does a part of the work, a tenth of it or less
+  constexpr int usual_light_samples = 64;
   const Scene& scene = prepared.parts()->scene;
   const double seconds =
       preview.seconds_a_sample * scene.render.spp + preview.seconds_a_direction * scene.radiosity.directions;
+  // The preview has no photons, and few light samples of points.
+  const bool has_photons = prepared.parts()->ready.lighting.has_specular() && scene.caustics.photons > 0;
+  const bool has_more = has_photons || scene.radiosity.light_samples.value_or(0) > usual_light_samples;
   std::string text = fmt::format("less than about {} from here", duration_text(least_for_estimate));
-  if (seconds > least_for_estimate) try {
+  if (seconds > least_for_estimate || has_more) try {
       text = fmt::format("about {} from here", duration_text(seconds_of_stages(prepared, film, {}, run)));
     } catch (const Error& error) { // the picture may do without what the estimate could not
       if (error.kind() == ErrorKind::interrupted) throw;
@@ -203,7 +207,8 @@ constexpr double most_growing_pixels = 1 << 23;
 
 bool grows(const RenderOptions& options, const api::Prepared& prepared, double pixels) {
   if (options.progressive || has_open_goal(options)) return true;
-  return !options.quiet && isatty(STDERR_FILENO) != 0 && pixels <= most_growing_pixels && film_fits(prepared, pixels);
+  return !options.quiet && isatty(STDERR_FILENO) != 0 && pixels <= most_growing_pixels &&
+         film_fits(prepared, pixels, false);
 }
 
 PictureGoal goal_of(const RenderOptions& options, const std::optional<ChosenSetting>& setting, int samples) {

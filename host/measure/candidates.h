@@ -11,14 +11,14 @@ namespace pointgi {
 
 /// A knob's values measured alone, about the start.
 struct KnobLine {
-  const Knob* knob;
+  const Knob* knob = nullptr;
   std::vector<std::size_t> runs;               ///< places in Trade::runs, in the order of the values
   std::vector<std::string> values;             ///< of the runs
   std::map<std::size_t, std::size_t> of_value; ///< the run of a value, by its place
   std::vector<std::string> skipped;
   std::size_t next = 0; ///< the place of the value that is to be measured now
   double cost = 0.0;    ///< of its first measurement, foretold
-  bool ended = false;   ///< dearer values would not fit either
+  std::string ended;    ///< the value that was refused, after which dearer ones are not tried
 };
 
 /// What is known when candidates are asked for.

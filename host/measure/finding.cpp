@@ -113,18 +113,18 @@ bool rises(const MeasuredRun& before, const MeasuredRun& after, const ErrorChang
   return changed.low > 0.0 && changed.value > little * before.error.value;
 }
 
-std::string finding_of(const Trade& trade, const Knob& knob, const KnobCurve& curve,
-                       const std::vector<std::string>& skipped, const ErrorChange& change) {
+std::string finding_of(const Trade& trade, const Knob& knob, const KnobCurve& curve, const SkippedValues& skipped,
+                       const ErrorChange& change) {
   if (!knob.left_out.empty()) return knob.left_out;
   const std::vector<Place> measured = places_of(trade, curve);
   std::string text = measured.size() < 2 ? "too few values were measured to tell. " + knob.theory
                      : knob.falls        ? told_of_falling(measured, knob.theory, change)
                                          : told_of_kinds(measured, knob.theory, change);
   std::string list;
-  for (const std::string& value : skipped)
+  for (const std::string& value : skipped.values)
     list += (list.empty() ? "" : ", ") + value;
   if (!list.empty())
-    text += (text.back() == '.' ? " Not" : "; not") + std::string(" measured for want of time: ") + list;
+    text += std::string(text.back() == '.' ? " Not" : "; not") + " measured " + skipped.why + ": " + list;
   return text;
 }
 

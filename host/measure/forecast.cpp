@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace pointgi {
 
@@ -71,12 +72,19 @@ double misfit(const Group& group, double of_one, const NoiseModel& model) {
 
 NoiseModel model_of(const std::vector<Group>& groups) {
   std::vector<std::pair<Group, double>> told;
+  bool tells_power = false; // light, factor and power take three numbers of samples
   for (Group group : groups) {
     const auto of_one = noise_of_one(group);
     const auto is_lost = [](const MeasuredRun* run) { return !(run->error.value > 0.0); };
     group.erase(std::remove_if(group.begin(), group.end(), is_lost), group.end());
-    if (of_one && group.size() > 1 && group.front()->samples < group.back()->samples)
-      told.emplace_back(std::move(group), *of_one);
+    if (!of_one || group.size() < 2) continue;
+    std::set<int> counts;
+    for (const MeasuredRun* run : group)
+      counts.insert(run->samples);
+    // The difference must be one of noise, not of chance.
+    if (counts.size() < 2 || group.front()->error.low <= group.back()->error.high) continue;
+    tells_power = tells_power || counts.size() > 2;
+    told.emplace_back(std::move(group), *of_one);
   }
   if (told.empty()) return {};
   // The best of a grid, then of a finer one about it.
@@ -94,8 +102,8 @@ NoiseModel model_of(const std::vector<Group>& groups) {
         if (off < least) least = off, best = model;
       }
   };
-  search({0.5, 1.5}, 0.1, 0.025);
-  search(best, 0.005, 0.00125);
+  search({0.5, tells_power ? 1.5 : 1.0}, 0.1, tells_power ? 0.025 : 0.0);
+  search(best, 0.005, tells_power ? 0.00125 : 0.0);
   return best;
 }
 

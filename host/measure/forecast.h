@@ -22,7 +22,7 @@ struct LightChoice {
 std::vector<LightChoice> light_choices(const Trade& trade);
 
 /// The model that fits the errors of runs which differ in render.spp alone, by least squares of what they are off by
-/// relatively; what variances tell, where the trade has none.
+/// relatively; of two numbers of samples alone the power is 1. What variances tell, where the trade has none.
 NoiseModel noise_model(const Trade& trade);
 
 struct PictureChoice {

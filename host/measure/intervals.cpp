@@ -56,19 +56,20 @@ void set_time_intervals(Trade& trade) {
   constexpr double least_freedom = 3.0;
   const Spread spread = spread_of_times(trade);
   for (MeasuredRun& run : trade.runs) {
-    const std::size_t count = logarithms(run.repeats).size();
+    const std::vector<double> logs = logarithms(run.repeats);
+    const std::size_t count = logs.size();
     if (count == 0) continue;
-    const auto [least, most] = std::minmax_element(run.repeats.begin(), run.repeats.end());
-    run.seconds.low = *least;
-    run.seconds.high = *most;
+    const auto [least, most] = std::minmax_element(logs.begin(), logs.end());
+    run.seconds.low = std::exp(*least);
+    run.seconds.high = std::exp(*most);
     if (spread.freedom < least_freedom) continue;
     // Of a normal distribution the median of two is their mean; that of three has 0.449 of the variance of one (David
     // and Nagaraja, Order Statistics); that of many pi / 2 of their mean's.
     const double share = (count < 3 ? 1.0 : count == 3 ? 1.347 : 1.571) / static_cast<double>(count);
     const double deviation = std::sqrt(spread.squares / spread.freedom * share);
     const double factor = std::exp(student_quantile(spread.freedom) * deviation);
-    run.seconds.low = std::min(run.seconds.value / factor, *least);
-    run.seconds.high = std::max(run.seconds.value * factor, *most);
+    run.seconds.low = std::min(run.seconds.value / factor, run.seconds.low);
+    run.seconds.high = std::max(run.seconds.value * factor, run.seconds.high);
   }
 }
 

@@ -271,7 +271,7 @@ KnobValue value_of(const Row& row, const std::string& text, const KnobScene& of)
   value.own = text == row.own(of.scene) && (method.empty() || method == of.scene.radiosity.method);
   value.in_scene =
       key == method_key ? text == of.method : text == row.own(of.scene) && (method.empty() || method == of.method);
-  if (!method.empty()) value.overrides.push_back("radiosity.method=" + method);
+  if (!method.empty() && method != of.scene.radiosity.method) value.overrides.push_back("radiosity.method=" + method);
   for (const char* with : row.with)
     value.overrides.emplace_back(with);
   value.overrides.push_back(key + "=" + text);

@@ -369,13 +369,16 @@ private:
       write_png(made.picture, path_of(run.picture), exposure_);
     }
     run.repeats.push_back(made.seconds);
+    const double before = run.seconds.value;
     run.seconds = estimate_of_repeats(run.repeats);
-    for (const auto& [stage, seconds] : made.stages)
-      run.stages.emplace(stage, 0.0);
-    for (auto& [stage, mean] : run.stages) {
-      const auto one = made.stages.find(stage);
-      add_to_mean(mean, one == made.stages.end() ? 0.0 : one->second, count);
+    // The stages of the repetition nearest to the median, scaled to it.
+    double of_stages = before;
+    if (count == 0 || std::fabs(made.seconds - run.seconds.value) <= std::fabs(before - run.seconds.value)) {
+      run.stages = made.stages;
+      of_stages = made.seconds;
     }
+    for (auto& [stage, seconds] : run.stages)
+      seconds *= run.seconds.value / of_stages;
     run.memory_bytes = std::max(run.memory_bytes, made.memory_bytes);
   }
 

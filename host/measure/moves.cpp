@@ -62,7 +62,7 @@ Overrides with_value(const Overrides& overrides, const Knob& knob, const KnobVal
 bool goes_with(const Overrides& overrides, const Knob& knob, const KnobValue& value, const std::string& method) {
   if (knob.key == method_key) return true;
   if (knob.of_exchange && method_of(overrides, method) == no_method) return false;
-  const std::string asked = method_of(value.overrides, "");
+  const std::string asked = method_of(value.overrides, knob.method);
   return asked.empty() || asked == method_of(overrides, method);
 }
 
@@ -122,8 +122,10 @@ std::string name_about(const Overrides& overrides, const Overrides& start, const
   }
   for (const std::string& text : overrides)
     if (!has(start, text)) besides.push_back(text);
-  if (start.empty() || besides.empty()) return name_of_overrides(overrides);
-  return start_name + "_" + name_of_overrides(besides);
+  const std::string plain = name_of_overrides(overrides);
+  if (start.empty() || besides.empty()) return plain;
+  const std::string about = start_name + "_" + name_of_overrides(besides);
+  return about.size() < plain.size() ? about : plain;
 }
 
 std::string name_of_overrides(const Overrides& overrides) {

@@ -27,8 +27,8 @@ std::optional<std::size_t> value_in(const Overrides& overrides, const Knob& knob
 Overrides cheapest(const std::vector<Knob>& knobs, const std::string& method);
 
 /// "cheap_spp-8": names the overrides by what they have besides those of the run `start`, and by the scene's own values
-/// that they have instead of these, but for what alone another radiosity.method reads; where the start has none, or the
-/// scene's own value has no name, as name_of_overrides. No two settings have one name. `method`: where they do not say.
+/// that they have instead of these, but for what alone another radiosity.method reads; where the start has none, the
+/// scene's own value has no name, or that is shorter, as name_of_overrides. `method`: where they do not say.
 std::string name_about(const Overrides& overrides, const Overrides& start, const std::string& start_name,
                        const std::vector<Knob>& knobs, const std::string& method);
 

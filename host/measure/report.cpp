@@ -59,6 +59,7 @@ nlohmann::json pictures_of(const Trade& trade, const std::string& folder) {
   nlohmann::json pictures = nlohmann::json::object();
   std::map<std::string, std::string> names;
   const auto add = [&](const std::string& name) {
+    if (pictures.contains(name)) return;
     std::ifstream file(std::filesystem::path(folder) / name, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
     // Whatever else a damaged trade.json may name does not belong in a page that is passed on.

@@ -48,10 +48,19 @@ private:
 
   bool is_known(const MeasuredRun& run) const { return known_place(run) < trade_.runs.size(); }
 
-  /// The same, the run being added where there is none.
-  std::size_t place_of(const MeasuredRun& run) {
-    if (!is_known(run)) trade_.runs.push_back(run);
-    return known_place(run);
+  /// The same, the run being added where there is none. What is kept of runs is found by their names: one that other
+  /// settings have, as those of an earlier measurement may, is not given again.
+  std::size_t place_of(MeasuredRun run) {
+    if (is_known(run)) return known_place(run);
+    const auto is_taken = [&](const std::string& name) {
+      return std::any_of(trade_.runs.begin(), trade_.runs.end(), [&](const auto& one) { return one.name == name; });
+    };
+    if (is_taken(run.name)) run.name = name_of_overrides(run.setting.overrides);
+    const std::string name = run.name;
+    for (int number = 2; is_taken(run.name); ++number)
+      run.name = name + "_" + std::to_string(number);
+    trade_.runs.push_back(std::move(run));
+    return trade_.runs.size() - 1;
   }
 
   /// A first repetition, where there is none. A run that has never been measured does not stay.
@@ -102,9 +111,8 @@ private:
     const std::string& method = own().setting.method;
     const std::string wanted = value.own ? method : method_of(value.overrides, method);
     run.setting.overrides = with_value(cheapest(knobs_, wanted), knob, value, knobs_, method);
-    run.name = run.setting.overrides == start().setting.overrides
-                   ? std::string(cheap_name)
-                   : std::string(cheap_name) + "_" + knob.name + "-" + value.text;
+    run.name = run.setting.overrides == start().setting.overrides ? start().name
+                                                                  : start().name + "_" + knob.name + "-" + value.text;
     return run;
   }
 
@@ -161,7 +169,7 @@ private:
     const std::size_t place = line.next++;
     const KnobValue& value = line.knob->values[place];
     const MeasuredRun run = run_of(*line.knob, value);
-    if (!is_known(run) && (line.ended || line.cost > std::min(world_.left() - reserve, longest_))) {
+    if (!is_known(run) && (!line.ended.empty() || line.cost > std::min(world_.left() - reserve, longest_))) {
       line.skipped.push_back(value.text);
       return true;
     }
@@ -173,7 +181,7 @@ private:
     line.runs.push_back(at);
     line.values.push_back(value.text);
     line.of_value[place] = at;
-    line.ended = line.ended || (!trade_.runs[at].refused.empty() && line.knob->falls);
+    if (!trade_.runs[at].refused.empty() && line.knob->falls && line.ended.empty()) line.ended = value.text;
     return true;
   }
 
@@ -181,7 +189,8 @@ private:
   bool singles() {
     const double reserve = (1.0 - options_.singles_share) * world_.left();
     for (const Knob& knob : knobs_) {
-      KnobLine line{&knob, {}, {}, {}, {}};
+      KnobLine line;
+      line.knob = &knob;
       foretell(line);
       lines_.push_back(std::move(line));
     }
@@ -197,22 +206,30 @@ private:
     }
   }
 
-  /// Where the error rises against theory, that may be chance of one seed: others tell.
-  bool confirm_rises() {
-    for (const KnobLine& line : lines_)
-      for (std::size_t i = 1; i < line.runs.size() && line.knob->falls; ++i) {
-        const std::size_t before = line.runs[i - 1], after = line.runs[i];
-        while (rises(trade_.runs[before], trade_.runs[after], world_.change) &&
-               std::min(trade_.runs[before].repeats.size(), trade_.runs[after].repeats.size()) < options_.repeats)
-          for (const std::size_t at : {before, after}) {
-            MeasuredRun& run = trade_.runs[at];
-            if (run.repeats.size() >= options_.repeats) continue;
-            if (seconds_of(run) > std::min(longest_, 0.5 * world_.left())) return true;
-            const std::size_t known = run.repeats.size();
-            if (!world_.measure(run, world_.left())) return false;
-            if (run.repeats.size() == known) return true; // the time was over
-          }
+  /// Where the error rises against theory, that may be chance of one seed: others tell. False where it is to end.
+  bool confirm_rise(MeasuredRun& before, MeasuredRun& after, double least_left) {
+    while (rises(before, after, world_.change) &&
+           std::min(before.repeats.size(), after.repeats.size()) < options_.repeats)
+      for (MeasuredRun* run : {&before, &after}) {
+        const std::size_t known = run->repeats.size();
+        if (known >= options_.repeats) continue;
+        if (seconds_of(*run) > world_.left() - least_left) return true;
+        if (!world_.measure(*run, world_.left() - least_left)) return false;
+        if (run->repeats.size() == known) return true; // the time was over
       }
+    return true;
+  }
+
+  bool confirm_rises() {
+    constexpr double share = 0.25; // of what is left
+    const double least_left = (1.0 - share) * world_.left();
+    for (const KnobLine& line : lines_) {
+      std::vector<std::size_t> done;
+      for (const std::size_t at : line.runs)
+        if (trade_.runs[at].refused.empty()) done.push_back(at);
+      for (std::size_t i = 1; i < done.size() && line.knob->falls; ++i)
+        if (!confirm_rise(trade_.runs[done[i - 1]], trade_.runs[done[i]], least_left)) return false;
+    }
     return true;
   }
 
@@ -299,7 +316,7 @@ private:
 
   void tell_curves() {
     trade_.knobs.clear();
-    for (const KnobLine& line : lines_) {
+    for (KnobLine& line : lines_) {
       KnobCurve curve{line.knob->name, {}, line.knob->falls, {}};
       if (start_ != 0 && line.knob->left_out.empty() && !line.knob->is_of_several_keys) curve.about = start().name;
       for (const std::size_t at : line.runs)
@@ -307,10 +324,13 @@ private:
       curve.values = line.values;
       for (const KnobValue& value : line.knob->values)
         if (value.in_scene) curve.own = value.text;
+      std::string why = line.ended.empty() ? "for want of time" : "as " + line.ended + " was refused";
       std::vector<std::string> skipped = line.skipped;
-      for (std::size_t v = line.next; v < line.knob->values.size(); ++v) // interrupted before
-        skipped.push_back(line.knob->values[v].text);
-      curve.finding = finding_of(trade_, *line.knob, curve, skipped, world_.change);
+      for (; line.next < line.knob->values.size(); ++line.next) {
+        skipped.push_back(line.knob->values[line.next].text);
+        why = "before it was ended";
+      }
+      curve.finding = finding_of(trade_, *line.knob, curve, {skipped, why}, world_.change);
       trade_.knobs.push_back(curve);
     }
   }

@@ -33,12 +33,13 @@ struct SearchOptions {
 /// Knobs alone are turned about the scene's own setting; where that takes too long for the budget, about a cheap one,
 /// in which all knobs that cost time have their cheapest values. Each goes from its cheap values to its dear ones; the
 /// next one is always the cheapest, those of other methods and of other kernels waiting longer; a value is skipped, and
-/// named in the knob's finding, where by the pace of the cheaper ones it would not fit. Then a knob at a time is turned
-/// in the settings on and near the front; what that may bring is foretold by what the knob alone has shown. Those that
-/// are foretold to gain most area of the trade for their cost are measured once, the better half of these twice, half
-/// of that three times; then again from the new front, until none is foretold to gain more than times scatter. The
-/// front is repeated. What is left of the budget goes to settings foretold to be near the front, then to repeats of
-/// all, until their times are steady. The outcome depends on the answers alone. False where `measure` ended it.
+/// named in the knob's finding, where by the pace of the cheaper ones it would not fit. Where an error rises against
+/// theory, other seeds are asked. Then a knob at a time is turned in the settings on and near the front; what that may
+/// bring is foretold by what the knob alone has shown. Those that are foretold to gain most area of the trade for their
+/// cost are measured once, the better half of these twice, half of that three times; then again from the new front,
+/// until none is foretold to gain more than times scatter. The front is repeated. What is left of the budget goes to
+/// settings foretold to be near the front, then to repeats of all, until their times are steady. The outcome depends on
+/// the answers alone. False where `measure` ended it.
 bool search(Trade& trade, const std::vector<Knob>& knobs, const SearchWorld& world, const SearchOptions& options = {});
 
 /// The scene as it is, among the runs, and the cheap setting.

@@ -31,7 +31,7 @@ struct MeasuredRun {
   std::vector<double> repeats;          ///< seconds of each repetition, from the prepared cloud to the picture, cold:
                                         ///< with a visibility map made anew
   Estimate seconds;                     ///< median of `repeats`; see set_time_intervals (host/measure/intervals.h)
-  std::map<std::string, double> stages; ///< seconds of each stage, the mean over the repetitions
+  std::map<std::string, double> stages; ///< seconds of each stage, scaled to the median
   std::uint64_t memory_bytes = 0;       ///< device_peak_bytes of the run
   Estimate error;                       ///< relMSE against the reference, whose own noise is taken off; low may be < 0
   double noise = std::numeric_limits<double>::infinity(); ///< of `error`, what the pixels' variances tell; infinite: of

@@ -76,10 +76,14 @@ const std::vector<PresetMeasurement>& preset_measurements() {
   return all;
 }
 
+double least_error(const std::string& kind) {
+  static const std::map<std::string, double> all = read_least_errors();
+  const auto least = all.find(kind);
+  return least == all.end() ? 0.0 : least->second;
+}
+
 double promised_error(const Preset& preset, const std::string& kind) {
-  static const std::map<std::string, double> least_errors = read_least_errors();
-  const auto least = least_errors.find(kind);
-  return least == least_errors.end() ? preset.error : std::max(preset.error, least->second);
+  return std::max(preset.error, least_error(kind));
 }
 
 std::vector<std::string> preset_names() {

@@ -32,7 +32,10 @@ struct PresetMeasurement {
 const std::vector<Preset>& presets();
 const std::vector<PresetMeasurement>& preset_measurements();
 
-/// relMSE that pictures of a scene of this kind keep below: of some kinds no setting goes below an error of theirs.
+/// relMSE that no setting goes below in some scenes of this kind; 0: there are none.
+double least_error(const std::string& kind);
+
+/// relMSE that pictures of a scene of this kind keep below: the preset's, and no less than the least error.
 double promised_error(const Preset& preset, const std::string& kind);
 
 std::vector<std::string> preset_names();

@@ -57,11 +57,11 @@ TEST_CASE("who waits for a picture is told how long and how accurate it will be,
 }
 
 TEST_CASE("a growing picture whose film the machine cannot hold is refused, and the older one stays") {
-  if (available_memory().value_or(std::uint64_t(1) << 50) >= std::uint64_t(188411) << 20) return; // it can
+  if (available_memory().value_or(std::uint64_t(1) << 50) >= std::uint64_t(376821) << 20) return; // it can
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene()), out = folder.write("x.exr", "older");
   const Run run = run_program("render " + scene + " --time 5 --size 65536x32767 -o " + out);
   CHECK(run.code == 6);
-  CHECK_THAT(run.err, Contains("keeps a film of 188411 MiB") && Contains("a smaller --size"));
+  CHECK_THAT(run.err, Contains("keeps a film of 376821 MiB") && Contains("a smaller --size"));
   CHECK(contents(out) == "older");
 }

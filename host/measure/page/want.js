@@ -15,9 +15,10 @@ function drawWant() {
     const run = limit > 0 ? choose(limit) : undefined;
     card.dataset.want = key;
     card.dataset.run = run ? run.name : "";
-    const figureOf = one => key === "seconds" ? fullSeconds(one) : one.error.value, nearest = least(measured, figureOf);
+    const nearest = least(measured, one => key === "seconds" ? fullSeconds(one) : one.error.value);
+    const reached = nearest ? ` The least is that of ${pick(nearest)}, ${key === "seconds" ? timeText(nearest) : errorText(nearest.error)}.` : "";
     card.innerHTML = run ? recommendation(run, key, limit)
-      : `<p>${limit > 0 ? `${none} The least is that of ${pick(nearest)}, ${figure(figureOf(nearest))}.` : `Write ${noun} above 0, such as 0.01.`}</p>`;
+      : `<p>${limit > 0 ? `${none}${reached}` : `Write ${noun} above 0, such as 0.01.`}</p>`;
   }
 }
 
@@ -69,7 +70,7 @@ function sentences() {
 
 function errorAgainstOwn(run) {
   const ratio = isTold(run.error) && isTold(own.error) ? `, ${figure(run.error.value / own.error.value)} times the scene’s own` : "";
-  const doubt = run.error.low > 0 && run.error.high > 0 ? ` (${errorRange(run.error)})` : "";
+  const doubt = isTold(run.error) ? ` (${errorRange(run.error)})` : "";
   return `its error is ${errorText(run.error)}${doubt}${ratio}.`;
 }
 

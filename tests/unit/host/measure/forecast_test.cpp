@@ -93,6 +93,15 @@ TEST_CASE("noise is taken as it is where no two runs tell how far it goes") {
   CHECK(light_choices(trade)[0].noise_a_sample == Approx(own_noise));
 }
 
+TEST_CASE("two numbers of samples tell a factor and no power, and chance tells nothing") {
+  Trade trade = trade_of();
+  trade.runs = {trade.runs[0], trade.runs[2]}; // 32 and 4 samples
+  CHECK(noise_model(trade).power == 1.0);
+  CHECK(noise_model(trade).factor == Approx(stratified).epsilon(0.01));
+  trade.runs[1].error = trade.runs[0].error;
+  CHECK(noise_model(trade).factor == 1.0);
+}
+
 TEST_CASE("the fastest setting within an error, with the samples that it needs") {
   const std::vector<LightChoice> lights = light_choices(trade_of());
   constexpr double pixels = 640.0 * 480.0;

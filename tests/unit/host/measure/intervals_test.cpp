@@ -81,10 +81,13 @@ TEST_CASE("of few repetitions the interval is their range, and what is no time d
   trade.runs.push_back(refused);
   trade.runs.push_back(run_of({1.0, 1.2}));
   set_time_intervals(trade);
-  CHECK(trade.runs[0].seconds.low == 2.0);
-  CHECK(trade.runs[0].seconds.high == 2.0);
+  CHECK(trade.runs[0].seconds.low == Approx(2.0));
+  CHECK(trade.runs[0].seconds.high == Approx(2.0));
   CHECK(trade.runs[1].seconds.high == 0.0);
-  CHECK(trade.runs[2].seconds.high == 1.2);
+  CHECK(trade.runs[2].seconds.high == Approx(1.2));
   trade.runs.push_back(run_of({1.0, 1.2, std::numeric_limits<double>::infinity(), 0.0}));
   CHECK(time_deviation(trade) == Approx(std::log(1.2) / std::sqrt(2.0)));
+  set_time_intervals(trade);
+  CHECK(trade.runs[3].seconds.low == Approx(1.0));
+  CHECK(trade.runs[3].seconds.high == Approx(1.2));
 }

@@ -248,7 +248,7 @@ TEST_CASE("a curve that rises is told, against theory or not") {
   trade.runs[2].bias = 0.5;
   CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("is off by +50 % and was by -0.1 %"));
   trade.runs[2].error = {0.5, 0.4, 0.6};
-  CHECK(finding_of(trade, knob, curve, {"9"}) ==
+  CHECK(finding_of(trade, knob, curve, {{"9"}}) ==
         "falls up to 10, and changes by less than a twentieth from there on; not measured for want of time: 9");
   trade.runs[0].error = trade.runs[1].error;
   CHECK_THAT(finding_of(trade, knob, curve, {}), Catch::Contains("stays the same"));
@@ -280,14 +280,35 @@ TEST_CASE("of values that differ in kind the best is told") {
   }
   Knob knob{"k", "a.k", false, "They differ.", {}};
   const KnobCurve curve{"k", {"k-0", "k-1", "k-2"}, false, {}, "", {"none", "cones", "fmm"}};
-  CHECK(finding_of(trade, knob, curve, {"all"}) ==
+  CHECK(finding_of(trade, knob, curve, {{"all"}}) ==
         "the least error is that of cones; by chance or by less than a twentieth differ fmm. They differ. "
         "Not measured for want of time: all");
   trade.runs[0].error = {0.55, 0.5, 0.6};
+  CHECK_THAT(finding_of(trade, knob, curve, {{"all"}, "as fmm was refused"}),
+             Catch::EndsWith(" Not measured as fmm was refused: all"));
   CHECK(finding_of(trade, knob, curve, {}) ==
         "no value has less error than the others, to within their intervals. They differ.");
   trade.runs[1].error = {0.1, 0.09, 0.11};
   CHECK(finding_of(trade, knob, curve, {}) == "the least error is that of cones. They differ.");
+}
+
+TEST_CASE("runs that an earlier measurement has left keep their names") {
+  Model model;
+  model.budget = 1000.0;
+  Trade trade;
+  MeasuredRun own, other;
+  own.name = own_name;
+  other.name = "spp-8"; // of another start
+  other.setting.overrides = {"a.spp=8", "b.rays=4"};
+  trade.runs = {own, other};
+  CHECK(search(trade, knobs(), model.world()));
+  std::set<std::string> names;
+  std::set<std::vector<std::string>> settings;
+  for (const MeasuredRun& run : trade.runs) {
+    CHECK(names.insert(run.name).second);
+    CHECK(settings.insert(run.setting.overrides).second);
+  }
+  CHECK(settings.count({"a.spp=8"}) == 1);
 }
 
 TEST_CASE("what two knobs have in common is measured once") {
