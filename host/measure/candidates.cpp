@@ -69,7 +69,7 @@ double with_samples(const MeasuredRun& run, int samples, const NoiseModel& model
 
 /// The setting of a run with another value of a knob: the time and the error change by what the knob alone has shown.
 std::optional<Candidate> moved(const TriedKnobs& tried, const MeasuredRun& from, const KnobLine& line,
-                               std::size_t place, const NoiseModel& noise) {
+                               std::size_t place, const NoiseModel& noise, double scattered) {
   const Knob& knob = *line.knob;
   const KnobValue& value = knob.values[place];
   const std::string& method = method_of_scene(tried);
@@ -82,7 +82,7 @@ std::optional<Candidate> moved(const TriedKnobs& tried, const MeasuredRun& from,
                                   start_of(tried).name, tried.knobs, method);
   constexpr double least_left = 0.3; // of a sum that would be less
   double seconds = seconds_of(*after) - seconds_of(*before);
-  if (std::fabs(seconds) < scatter(tried) * seconds_of(*before)) seconds = 0.0; // may be chance
+  if (std::fabs(seconds) < scattered * seconds_of(*before)) seconds = 0.0; // may be chance
   candidate.foretold = {std::max(seconds_of(from) + seconds, least_left * seconds_of(from)),
                         knob.key == samples_key && std::isfinite(from.noise)
                             ? with_samples(from, std::stoi(value.text), noise)
@@ -99,12 +99,13 @@ std::vector<Candidate> neighbours(const TriedKnobs& tried, double most) {
     known.insert(run.setting.overrides);
   const std::vector<TradePoint> measured = points_of(tried.trade);
   const NoiseModel noise = noise_model(tried.trade);
+  const double scattered = scatter(tried);
   std::vector<Candidate> all;
   for (const MeasuredRun& from : tried.trade.runs) {
     if (!from.refused.empty() || behind(point_of(from), measured) > near) continue;
     for (const KnobLine& line : tried.lines)
       for (std::size_t v = 0; v < line.knob->values.size() && !line.knob->is_of_several_keys; ++v)
-        if (auto candidate = moved(tried, from, line, v, noise);
+        if (auto candidate = moved(tried, from, line, v, noise, scattered);
             candidate && known.insert(candidate->run.setting.overrides).second) {
           candidate->cost = tried.cost_of(candidate->run, candidate->foretold.seconds);
           if (candidate->cost <= most) all.push_back(std::move(*candidate));
