@@ -62,7 +62,9 @@ public:
         estimate_.stages.push_back({record.name, true, "every scene", record.seconds,
                                     record.name == "octree" ? held_ : 0, static_cast<double>(record.items),
                                     record.unit});
+    find_shafts();
     estimate_exchange();
+    store_direct_light();
     estimate_photons();
     estimate_pixels();
     return std::move(estimate_);
@@ -87,15 +89,27 @@ private:
     DeviceVisibility(session_, prepared_.ready.on_device, request_.variant, request_.points, delta).blocked(one);
   }
 
+  void find_shafts() {
+    shafts_ = shaft_light_of(request_, stages_);
+    request_.shafts = shafts_ ? &*shafts_ : nullptr;
+    const StageRecord& record = stages_.records().back();
+    if (!record.ran)
+      skip("shafts", record.reason);
+    else
+      add("shafts", "the scene has lamps or [[light]]s", record.seconds, 0);
+  }
+
   /// By a part of the estimates; how long all would take.
-  std::vector<float> find_direct_light(bool with_emitters, double& seconds) {
+  std::vector<float> find_direct_light(bool with_emitters, bool with_sky, double& seconds) {
     constexpr unsigned part = 8;
     const unsigned samples = direct_light_samples(request_, with_emitters), few = (samples + part - 1) / part;
     const Clock::time_point begin = Clock::now();
-    std::vector<float> direct = session_.download(
-        direct_irradiance_of_points(session_, prepared_.ready.on_device, request_.variant, request_.lighting,
-                                    request_.frame.side, pool_, few, with_emitters, stop_asked),
-        3 * pool_);
+    std::vector<float> direct =
+        light_of_sources(session_, prepared_.ready.on_device, request_, with_emitters, few);
+    const std::vector<float> sky = with_sky ? light_of_sky(session_, prepared_.ready.on_device, request_, few)
+                                            : std::vector<float>(direct.size());
+    for (std::size_t i = 0; i < direct.size(); ++i)
+      direct[i] += sky[i];
     seconds = seconds_since(begin) * samples / few;
     return direct;
   }
@@ -124,7 +138,6 @@ private:
           std::max(light_bytes, vmap_bytes(plan.clusters.place.size(), 1u << 17)));
       if (method == nullptr) return skip_both(why);
     } else {
-      plan.direct = find_direct_light(!emitters_exchange, direct_seconds);
       if (method->without_vmap == nullptr) {
         const Clock::time_point begin = Clock::now();
         plan.clusters = cluster_points(session_, exchange, settings);
@@ -132,10 +145,14 @@ private:
         map_seconds = seconds_since(begin);
       }
     }
+    const bool sky_is_told = tells_sky(*method, request_);
+    direct_ = find_direct_light(!emitters_exchange, !sky_is_told, direct_seconds);
+    if (!plan.sources.empty()) direct_seconds = 0.0; // in `plan`
+    if (sky_is_told) stored_sky_.assign(3 * pool_, 0.0f);
     std::vector<float> emitted;
     if (emitters_exchange) emitted = emitted_radiosity(request_.lighting, request_.points);
     ExchangeEstimate found = sample_exchange(session_, exchange, settings, *method,
-                                             {{plan.direct, emitted}, plan.clusters.tree, plan.choice.vmap});
+                                             {{direct_, emitted}, plan.clusters.tree, plan.choice.vmap});
     if (method->without_vmap != nullptr)
       skip("vmap", settings.method == "auto" ? why : method->without_vmap);
     else {
@@ -154,11 +171,18 @@ private:
     estimate_.exchange_rays = found.rays;
     estimate_.applies = found.applies;
     exchanges_ = true;
-    direct_ = std::move(plan.direct);
     // What pixels read of it: any light does, for the time that it takes.
     light_.irradiance = session_.upload(std::vector<cl_float4>(pool_));
     light_.light.indirect.at_pixels = std::move(found.at_pixels);
     held_ = std::max(held_ + sizeof(cl_float4) * pool_, session_.held_bytes());
+  }
+
+  /// What pixels read of it: as much as they will, of whatever light.
+  void store_direct_light() {
+    IndirectLight light;
+    light.sky = std::move(stored_sky_);
+    light_.light.direct = upload_direct(session_, request_, light);
+    held_ = std::max(held_, session_.held_bytes());
   }
 
   /// The stage `photon` with so many; its seconds.
@@ -283,6 +307,8 @@ private:
   std::size_t pool_;
   std::uint64_t held_; ///< by the device, as the stages will have it
   bool exchanges_ = false;
+  std::optional<ShaftLight> shafts_;
+  std::vector<float> stored_sky_; ///< IndirectLight::sky
   std::vector<float> direct_; ///< IndirectLight::direct, where light is exchanged
   PictureEstimate estimate_;
 };

@@ -105,6 +105,10 @@ FilmJob::FilmJob(Light::Parts& light, const FilmOptions& options)
     request_->cones = light.light.indirect.at_pixels ? &*light.light.indirect.at_pixels : nullptr;
     request_->shadow_rays = !direct_light_by_radiosity(view_);
   }
+  if (light.light.direct) {
+    request_->stored_direct = &light.light.direct->texels;
+    lighting_.params.sky_at_points = light.light.direct->sky ? 1u : 0u;
+  }
   request_->normal_field = light.light.normal_field ? &*light.light.normal_field : nullptr;
   request_->photons = light.light.photons ? &*light.light.photons : nullptr;
 }

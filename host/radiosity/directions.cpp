@@ -42,6 +42,7 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
   const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
   trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
   receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
+  see_sky_ = session.kernel("radiosity/directions/receive.cl", "", "sky_by_directions");
   const std::vector<std::uint32_t> traced = points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_;
   place_buffer_ = session.upload(traced);
   cells_ = session.upload(set_.cells);
@@ -112,6 +113,36 @@ void DeviceDirections::receive(const Band& band, const Buffer<cl_float4>& radios
   });
 }
 
+void DeviceDirections::for_each_band(const std::function<void(const Band&)>& use) {
+  for (const Band& band : bands_)
+    use(band);
+  Band again;
+  if (kept_ < places_.size()) again.hits = session_.allocate<cl_uint>(std::size_t{at_once_} * set_.weights.size());
+  for (again.first = kept_; again.first < places_.size(); again.first = again.end) {
+    again.end = static_cast<cl_uint>(std::min<std::size_t>(places_.size(), again.first + at_once_));
+    trace(again, {});
+    use(again);
+  }
+}
+
+std::vector<float> DeviceDirections::sky_share() {
+  if (places_.empty()) return {};
+  const auto share = session_.allocate<float>(places_.size());
+  for_each_band([&](const Band& band) {
+    for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t size) {
+      const cl_uint from = band.first + static_cast<cl_uint>(first);
+      return session_.launch(see_sky_, LaunchShape::line(size, receive_group), band.hits, band.first, from,
+                             from + static_cast<cl_uint>(size), weights_, static_cast<cl_uint>(set_.weights.size()),
+                             share);
+    });
+  });
+  const auto found = session_.download(share, places_.size());
+  std::vector<float> of_places(places_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    of_places[i] = found[rank_[i]];
+  return of_places;
+}
+
 void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::vector<double>& irradiance) {
   if (radiosity.size != 3 * places_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
   irradiance.clear();
@@ -121,15 +152,7 @@ void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::ve
     for (std::size_t c = 0; c < 3; ++c)
       of_pool[places_[i]].s[c] = static_cast<float>(radiosity[3 * i + c]);
   const auto sent = session_.upload(of_pool);
-  for (const Band& band : bands_)
-    receive(band, sent);
-  Band again;
-  if (kept_ < places_.size()) again.hits = session_.allocate<cl_uint>(std::size_t{at_once_} * set_.weights.size());
-  for (again.first = kept_; again.first < places_.size(); again.first = again.end) {
-    again.end = static_cast<cl_uint>(std::min<std::size_t>(places_.size(), again.first + at_once_));
-    trace(again, {});
-    receive(again, sent);
-  }
+  for_each_band([&](const Band& band) { receive(band, sent); });
   const auto received = session_.download(irradiance_, places_.size());
   irradiance.resize(radiosity.size);
   for (std::size_t i = 0; i < places_.size(); ++i)

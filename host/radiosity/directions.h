@@ -35,6 +35,9 @@ public:
   /// Linear in B whatever the linearisation point is.
   void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
+  /// [points, in the order of `places`]: the share of an even sky that each sees.
+  std::vector<float> sky_share();
+
   unsigned directions() const { return static_cast<unsigned>(set_.weights.size()); } ///< a point
   std::uint64_t rays() const { return rays_; }            ///< with those that were traced again
   std::uint64_t beam_rays() const { return beam_rays_; }  ///< of them, first hits that beams have found
@@ -52,6 +55,8 @@ private:
   /// progress: of the band's points.
   void trace(const Band& band, const std::function<void(double)>& progress);
   void receive(const Band& band, const Buffer<cl_float4>& radiosity);
+  /// Of all points, in bands: those that are kept, and then the others, traced again.
+  void for_each_band(const std::function<void(const Band&)>& use);
 
   Session& session_;
   DevicePools pools_;
@@ -69,7 +74,7 @@ private:
   Buffer<std::array<float, 4>> cells_;
   Buffer<float> weights_;
   Buffer<cl_float4> irradiance_;
-  cl::Kernel trace_, receive_;
+  cl::Kernel trace_, receive_, see_sky_;
   Pace trace_pace_, receive_pace_; ///< work-items, points
   std::uint64_t rays_ = 0, beam_rays_ = 0;
   double trace_seconds_ = 0.0;

@@ -11,7 +11,7 @@ class PreparedDirections : public PreparedRadiosity {
 public:
   PreparedDirections(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                      const WorkReport& report)
-      : places_(exchanging_points(scene)), points_(points_at(scene, places_)) {
+      : pool_points_(scene.points.size), places_(exchanging_points(scene)), points_(points_at(scene, places_)) {
     if (places_.empty()) return;
     DirectionsOptions options;
     options.directions = static_cast<unsigned>(settings.directions);
@@ -27,6 +27,14 @@ public:
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
     return solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
   }
+  std::vector<float> sky_share() override {
+    std::vector<float> of_pool(pool_points_);
+    if (!exchange_) return of_pool;
+    const std::vector<float> share = exchange_->sky_share();
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      of_pool[places_[i]] = share[i];
+    return of_pool;
+  }
   std::uint64_t rays() const override { return exchange_ ? exchange_->rays() : 0; }
   std::string summary() const override {
     return exchange_ ? std::to_string(exchange_->directions()) + " directions a point" : "no point exchanges light";
@@ -39,6 +47,7 @@ public:
   }
 
 private:
+  std::size_t pool_points_;
   std::vector<std::uint32_t> places_;
   std::vector<Splat> points_;
   std::unique_ptr<DeviceDirections> exchange_; ///< absent: nothing exchanges light
@@ -54,6 +63,6 @@ std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene
 
 extern const RadiosityMethod directions_method{
     "directions", "radiosity.method = \"directions\" traces rays from each point into its own hemisphere", true,
-    prepare};
+    prepare, false, true};
 
 } // namespace pointgi

@@ -53,6 +53,10 @@ public:
   /// irradiance, and where nothing exchanges light. Nothing may be solved for after that.
   virtual std::optional<DeviceCones> cones_of(View<float>) { return std::nullopt; }
 
+  /// [points of the pool]: the share of an even sky that each point sees, its directions counted by the cosine, where the
+  /// method has found that on its way; 0 of points that exchange no light. Else empty.
+  virtual std::vector<float> sky_share() { return {}; }
+
   /// Rays that decided who sees whom until now, or in an earlier run. Solving traces only what a method does not keep.
   virtual std::uint64_t rays() const = 0;
   /// What it works with, for the log: "12345 links".
@@ -74,6 +78,7 @@ struct RadiosityMethod {
                                                 const RadiositySettings& settings, std::optional<RadiosityMap> map,
                                                 const WorkReport& report);
   bool has_passes = false; ///< the light is there a bounce at a time, and can be looked at after each
+  bool tells_sky = false;  ///< PreparedRadiosity::sky_share() is known
 };
 
 /// All methods; the first is the one that needs a V-map.

@@ -9,9 +9,10 @@ namespace {
 /// POOL_PARAMS of kernels/lib/pools.cl, in its order.
 std::vector<cl::Memory> pool_arguments(const DevicePools& pools, const Buffer<cl_float4>* irradiance,
                                        const Buffer<cl_float4>* normal_field, const DevicePhotonMap* photons,
-                                       const DeviceCones* cones) {
+                                       const DeviceCones* cones, const Buffer<cl_float4>* stored_direct) {
   std::vector<cl::Memory> all{pools.nodes, pools.leaves, pools.points};
   if (irradiance != nullptr) all.push_back(irradiance->handle);
+  if (stored_direct != nullptr) all.push_back(stored_direct->handle);
   if (cones != nullptr)
     all.insert(all.end(), {cones->grid.handle, cones->cones.handle, cones->voxels.handle, cones->cells.handle});
   if (normal_field != nullptr) all.push_back(normal_field->handle);
@@ -26,10 +27,9 @@ std::vector<cl::Memory> pool_arguments(const DevicePools& pools, const Buffer<cl
 TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
                            const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
-                           const DevicePhotonMap* photons, Backfaces backfaces, const DeviceCones* cones)
-    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr, nullptr)),
-      points_(pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons, paths ? nullptr : cones)),
-      params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
+                           const DevicePhotonMap* photons, Backfaces backfaces, const DeviceCones* cones,
+                           const Buffer<cl_float4>* stored_direct, std::size_t pool_points)
+    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr, nullptr, nullptr)), params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
       shade_group_(paths ? WorkGroup{} : variant.group),
       film_channels_(film_scalars(normal_field != nullptr, photons != nullptr)) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
@@ -45,6 +45,17 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
     features.material_flags = lighting.flags;
     features.gather_k = photons != nullptr ? photons->k : 0;
   }
+  // Programs of other devices are few, and all take it.
+  features.stored_direct = !paths && shadow_rays && (stored_direct != nullptr || !session.info().is_cpu);
+  if (features.stored_direct && stored_direct == nullptr) {
+    nothing_stored_ = session.allocate<cl_float4>(std::max<std::size_t>(1, pool_points));
+    session.fill(nothing_stored_, cl_float4{}, nothing_stored_.size);
+    params_.sky_at_points = 0;
+  }
+  points_ = pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons, paths ? nullptr : cones,
+                           !features.stored_direct         ? nullptr
+                           : stored_direct != nullptr      ? stored_direct
+                                                           : &nothing_stored_);
   if (paths) {
     std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
     params_.most_bounces = paths->most_bounces;

@@ -27,12 +27,14 @@ public:
   /// `side`: of the root cube, world units; `paths`: by path tracing; else
   /// `irradiance`, of each point, is reflected too where it is there, and what pixels gather by `cones`, and instead of
   /// shadow rays' light without `shadow_rays`. Without a `normal_field` no surface is specular: all but diffuse ones
-  /// look black. Builds the programs where they are not built yet.
+  /// look black. `stored_direct`: what the points of the pool, `pool_points`, know of their direct light; shadow rays
+  /// find the rest. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
                const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
                const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr,
-               Backfaces backfaces = Backfaces::shade, const DeviceCones* cones = nullptr);
+               Backfaces backfaces = Backfaces::shade, const DeviceCones* cones = nullptr,
+               const Buffer<cl_float4>* stored_direct = nullptr, std::size_t pool_points = 0);
 
   pg_uint samples() const { return params_.samples; }
 
@@ -56,6 +58,7 @@ public:
 
 private:
   Session& session_;
+  Buffer<cl_float4> nothing_stored_; ///< where programs take what the scene has none of
   std::vector<cl::Memory> octree_, points_; ///< OCTREE_PARAMS and POOL_PARAMS (kernels/lib/pools.cl)
   RenderParams params_;
   RayGrouping grouping_;

@@ -39,6 +39,22 @@ private:
   std::string done_ = "at work";
 };
 
+DeviceLighting without_environment(const DeviceLighting& lighting) {
+  DeviceLighting sources = lighting;
+  sources.has_environment = false;
+  sources.sky.reset();
+  std::fill_n(sources.params.environment, 3, 0.0f);
+  return sources;
+}
+
+DeviceLighting environment_alone(const DeviceLighting& lighting) {
+  DeviceLighting sky = lighting;
+  sky.light_sources.clear();
+  sky.emitters.clear();
+  sky.light_types = sky.params.light_sources = sky.params.emitters = 0;
+  return sky;
+}
+
 } // namespace
 
 unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters) {
@@ -51,6 +67,40 @@ unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters
   // Light that the picture shows at the points has the samples of a pixel.
   const int default_samples = direct_light_by_radiosity(scene) ? scene.render.spp : indirect_light_samples;
   return static_cast<unsigned>(scene.radiosity.light_samples.value_or(default_samples));
+}
+
+bool tells_sky(const RadiosityMethod& method, const IndirectRequest& request) {
+  return method.tells_sky && request.lighting.has_environment && request.lighting.sky == nullptr;
+}
+
+std::vector<float> light_of_sources(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                    bool with_emitters, unsigned samples) {
+  const DeviceLighting lighting = without_environment(request.lighting);
+  const std::size_t points = request.points.size;
+  // What lamps that exchange light send is no direct light, and shafts have summed it up, too.
+  const bool all_of_them = with_emitters || lighting.emitters.empty();
+  const ShaftLight* shafts = all_of_them ? request.shafts : nullptr;
+  std::vector<std::uint32_t> unknown;
+  for (std::uint32_t i = 0; shafts != nullptr && i < points; ++i)
+    if (shafts->known[i] == 0) unknown.push_back(i);
+  std::vector<float> direct = session.download(
+      direct_irradiance_of_points(session, pools, request.variant, lighting, request.frame.side, points, samples,
+                                  with_emitters, stop_asked,
+                                  shafts != nullptr ? std::optional<View<std::uint32_t>>(unknown) : std::nullopt),
+      3 * points);
+  for (std::size_t i = 0; shafts != nullptr && i < direct.size(); ++i)
+    direct[i] += shafts->irradiance[i];
+  return direct;
+}
+
+std::vector<float> light_of_sky(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                unsigned samples) {
+  const std::size_t points = request.points.size;
+  if (!request.lighting.has_environment) return std::vector<float>(3 * points);
+  return session.download(direct_irradiance_of_points(session, pools, request.variant,
+                                                      environment_alone(request.lighting), request.frame.side, points,
+                                                      samples, false, stop_asked),
+                          3 * points);
 }
 
 bool has_reflectors(const Scene& scene, View<Splat> points) {
@@ -167,20 +217,25 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
   return map;
 }
 
-std::vector<float> direct_light(Session& session, const DevicePools& pools, const IndirectRequest& request,
-                                bool with_emitters) {
-  const std::size_t points = request.points.size;
-  return session.download(
-      direct_irradiance_of_points(session, pools, request.variant, request.lighting, request.frame.side, points,
-                                  direct_light_samples(request, with_emitters), with_emitters, [] { return false; }),
-      3 * points);
+std::vector<float> sum_of(std::vector<float> a, View<float> b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    a[i] += b[i];
+  return a;
+}
+
+/// The sky's light at the points, by the share of it that each sees.
+std::vector<float> sky_by_method(const IndirectRequest& request, PreparedRadiosity& prepared) {
+  const std::vector<float> share = prepared.sky_share();
+  std::vector<float> sky;
+  for (const float seen : share)
+    for (const float radiance : request.lighting.params.environment)
+      sky.push_back(3.14159265f * radiance * seen);
+  return sky;
 }
 
 /// Whether direct light has to be passed on by surfaces at all: not where the light between them cannot matter.
 bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, View<float> direct) {
   const double least = request.scene.radiosity.least_share;
-  // What mirrors throw, and what shines among the points, is not in the bound.
-  if (least == 0.0 || request.lighting.has_specular() || direct_light_by_radiosity(request.scene)) return true;
   double albedo = 0.0, brightest = 0.0;
   std::vector<double> reflected;
   for (std::size_t k = 0; k < clusters.place.size(); ++k)
@@ -202,9 +257,15 @@ ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, cons
   StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
-  ExchangePlan plan{{nullptr, {}, {}}, {}, direct_light(session, exchange.pools, request, !emitters_exchange)};
-  plan.clusters = cluster_points(session, exchange, settings);
-  if (!may_matter(request, plan.clusters, plan.direct))
+  ExchangePlan plan{{nullptr, {}, {}}, cluster_points(session, exchange, settings), {}, {}};
+  // What mirrors throw, and what shines among the points, is not in the bound.
+  const bool has_bound = settings.least_share > 0.0 && !request.lighting.has_specular() && !emitters_exchange;
+  if (has_bound) {
+    const unsigned samples = direct_light_samples(request, true);
+    plan.sources = light_of_sources(session, exchange.pools, request, true, samples);
+    plan.sky = light_of_sky(session, exchange.pools, request, samples);
+  }
+  if (has_bound && !may_matter(request, plan.clusters, sum_of(plan.sources, plan.sky)))
     plan.choice.reason = fmt::format("surfaces send each other less than {:g} of the light, radiosity.least_share",
                                      settings.least_share);
   else
@@ -219,20 +280,30 @@ ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, cons
 
 namespace {
 
-/// What enters first: lights, what shines, and photons by way of specular surfaces.
+/// What enters first: lights, what shines, and photons by way of specular surfaces. light.direct: that of lamps and
+/// [[light]]s, if it is there already; `sky`: likewise.
 RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, const ExchangeScene& exchange,
-                            const IndirectRequest& request, IndirectLight& light, StageLog& stages) {
+                            const IndirectRequest& request, std::vector<float> sky, IndirectLight& light,
+                            StageLog& stages) {
   stages.start(light.method->name);
   StageWatch watch(session);
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
-  if (light.direct.empty()) light.direct = direct_light(session, exchange.pools, request, !emitters_exchange);
+  light.prepared = light.method->prepare(session, exchange, settings, std::move(map), watch.report());
+  if (tells_sky(*light.method, request)) light.sky = sky_by_method(request, *light.prepared);
+  const unsigned samples = direct_light_samples(request, !emitters_exchange);
+  if (light.direct.empty())
+    light.direct = light_of_sources(session, exchange.pools, request, !emitters_exchange, samples);
+  if (!light.sky.empty())
+    sky = light.sky;
+  else if (sky.empty())
+    sky = light_of_sky(session, exchange.pools, request, samples);
+  light.direct = sum_of(std::move(light.direct), sky);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
   std::vector<float> entering = light.direct;
   for (std::size_t i = 0; i < request.caustic.size; ++i)
     entering[i] += request.caustic[i];
-  light.prepared = light.method->prepare(session, exchange, settings, std::move(map), watch.report());
   if (request.after_pass)
     light.prepared->after_pass = [&](unsigned pass, const std::vector<float>& irradiance) {
       IndirectLight so_far;
@@ -262,7 +333,41 @@ void report_solution(const IndirectLight& light, const Solution& solution) {
 std::vector<float> direct_light_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request) {
   const StageWatch watch(session);
   if (!request.lighting.has_light()) return std::vector<float>(3 * request.points.size);
-  return direct_light(session, pools, request, true);
+  const unsigned samples = direct_light_samples(request, true);
+  return sum_of(light_of_sources(session, pools, request, true, samples),
+                light_of_sky(session, pools, request, samples));
+}
+
+std::optional<ShaftLight> shaft_light_of(const IndirectRequest& request, StageLog& stages) {
+  const DeviceLighting& lighting = request.lighting;
+  const auto skip = [&](const char* reason) {
+    stages.skip("shafts", reason);
+    return std::nullopt;
+  };
+  if (request.by_paths) return skip("the path tracer makes the picture");
+  if (lighting.light_sources.empty() && lighting.emitters.empty()) return skip("the scene has no lamp and no [[light]]");
+  if (direct_light_by_radiosity(request.scene)) return skip("radiosity.direct_light = \"radiosity\"");
+  if (request.variant.patches) return skip("patches of the surface stick out of shafts");
+  stages.start("shafts");
+  ShaftLight light = light_through_shafts(request.points, lighting);
+  stages.finish(request.points.size, "points");
+  log_info("shafts: {:.0f} % of the points see all of their lamps, or nothing; the others ask shadow rays",
+           100.0 * static_cast<double>(light.known_points) / static_cast<double>(std::max<std::size_t>(1, request.points.size)));
+  return light;
+}
+
+std::optional<StoredDirect> upload_direct(Session& session, const IndirectRequest& request, const IndirectLight& light) {
+  const bool some_known = request.shafts != nullptr && request.shafts->known_points > 0;
+  if (direct_light_by_radiosity(request.scene) || request.by_paths || (!some_known && light.sky.empty()))
+    return std::nullopt;
+  std::vector<cl_float4> texels(request.points.size);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c)
+      texels[i].s[c] = (some_known ? request.shafts->irradiance[3 * i + c] : 0.0f) +
+                       (light.sky.empty() ? 0.0f : light.sky[3 * i + c]);
+    texels[i].s[3] = some_known && request.shafts->known[i] != 0 ? 1.0f : 0.0f;
+  }
+  return StoredDirect{session.upload(texels), !light.sky.empty()};
 }
 
 std::vector<float> sky_of_points(Session& session, const DevicePools& pools, const IndirectRequest& request,
@@ -307,15 +412,18 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   const ExchangeScene exchange = exchange_scene(pools, request, exchanging);
   std::optional<RadiosityMap> clusters, map;
   std::optional<LinkEstimate> expected;
+  std::vector<float> sky;
   std::string without_vmap;
   if (settings.method == "auto") {
     ExchangePlan plan = plan_exchange(session, exchange, request, stages);
     light.method = plan.choice.method;
-    light.direct = std::move(plan.direct);
+    light.direct = std::move(plan.sources);
+    sky = std::move(plan.sky);
     clusters = std::move(plan.clusters);
     expected = plan.choice.vmap;
     without_vmap = plan.choice.reason;
     if (light.method == nullptr) {
+      light.direct = sum_of(std::move(light.direct), sky);
       skip(without_vmap);
       return light;
     }
@@ -325,7 +433,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     stages.skip("vmap", without_vmap);
   else
     map = run_vmap(session, exchange, request, std::move(clusters), expected, stages);
-  RadiosityField field = run_exchange(session, std::move(map), exchange, request, light, stages);
+  RadiosityField field = run_exchange(session, std::move(map), exchange, request, std::move(sky), light, stages);
   light.rays = light.prepared->rays();
   light.statistics = light.prepared->statistics();
   light.from_surfaces = std::move(field.irradiance);

@@ -1,5 +1,6 @@
 #pragma once
 /// The stages of indirect light, between the octree and the picture: which the scene needs, and what they found.
+#include "host/lights/shaft_light.h"
 #include "host/radiosity/plan.h"
 #include "host/scene/frame.h"
 #include "host/stages/stages.h"
@@ -13,6 +14,7 @@ namespace pointgi {
 struct IndirectLight {
   std::vector<float> from_surfaces; ///< H(B)
   std::vector<float> direct;        ///< from lights; from splats that shine, too, unless they take part in the exchange
+  std::vector<float> sky;           ///< of it, from an even environment; empty: not known apart
   Solution solution;
   std::uint64_t rays = 0; ///< that decided which points see each other
   std::vector<MethodStatistic> statistics;
@@ -34,16 +36,40 @@ struct IndirectRequest {
                          ///< on; empty: none
   /// Called after each pass of a method that has passes, with the light so far; may be empty.
   std::function<void(unsigned pass, const IndirectLight& so_far)> after_pass{};
+  const ShaftLight* shafts = nullptr; ///< what shaft_light_of() has found
 };
 
 /// What light is exchanged in. `exchanging`: exchanging_materials(); must live as long, as must the others.
 ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging);
 
+/// The stage `shafts`: where lamps and [[light]]s need no shadow rays. Absent, and skipped with the reason, where nothing
+/// asks for it.
+std::optional<ShaftLight> shaft_light_of(const IndirectRequest& request, StageLog& stages);
+
+/// Direct light that pictures take from the points, as the device reads it (kernels/lib/pools.cl).
+struct StoredDirect {
+  Buffer<cl_float4> texels;
+  bool sky = false; ///< that of the environment is in it
+};
+
+/// Absent where nothing of it is known at the points, or where the points' irradiance holds all of it.
+std::optional<StoredDirect> upload_direct(Session& session, const IndirectRequest& request, const IndirectLight& light);
+
+/// Irradiance of the points [points x 3] by lamps and [[light]]s, the mean of `samples` estimates where shafts do not
+/// know it; with_emitters: by splats that shine, too.
+std::vector<float> light_of_sources(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                    bool with_emitters, unsigned samples);
+/// The same by the environment.
+std::vector<float> light_of_sky(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                unsigned samples);
+/// Whether the method tells what the environment adds, and rays need not.
+bool tells_sky(const RadiosityMethod& method, const IndirectRequest& request);
+
 /// What the stage `plan` finds: the method, and on the way to it what that method will need.
 struct ExchangePlan {
   MethodPlan choice;
   RadiosityMap clusters;     ///< of the points that exchange light
-  std::vector<float> direct; ///< IndirectLight::direct
+  std::vector<float> sources, sky; ///< of IndirectLight::direct, where it was found on the way; else empty
 };
 
 /// The stage `plan`: which method suits a scene that leaves the method open. Throws as run_indirect_stages.

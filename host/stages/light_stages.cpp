@@ -46,6 +46,8 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
   SceneLight light;
   Caustics caustics;
   IndirectRequest wanted = request;
+  const std::optional<ShaftLight> shafts = shaft_light_of(request, stages);
+  wanted.shafts = shafts ? &*shafts : nullptr;
   const auto send_photons = [&] {
     light.normal_field = normal_field_of(session, request.lighting, request.points, request.variant.patches, stages);
     caustics = run_photon_stage(session, pools, request, light.normal_field ? &*light.normal_field : nullptr, stages);
@@ -63,6 +65,7 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
   if (settings.indirect && caustics.ledger && !light.indirect.from_surfaces.empty())
     add_rounds(session, pools, wanted, light, caustics, stages);
   finish_exchange(wanted, light.indirect);
+  light.direct = upload_direct(session, wanted, light.indirect);
   light.photons = upload_caustics(session, caustics, request, stages);
   light.ledger = caustics.ledger;
   return light;

@@ -78,15 +78,25 @@ static inline uint pool_component(uint4 texel, uint i) {
 #define LIT_PARAMS OCTREE_PARAMS
 #endif
 
+#ifdef HAS_STORED_DIRECT
+/* And direct light that is known at the points: direct_pool[i].xyz is irradiance [W/m2, scaled as RenderParams], .w the share of
+ * the light of [[light]]s and emitting splats that it holds; all of the sky's where RenderParams::sky_at_points. */
+#define STORED_ARGS LIT_ARGS, direct_pool
+#define STORED_PARAMS LIT_PARAMS, const __global float4 *restrict direct_pool
+#else
+#define STORED_ARGS LIT_ARGS
+#define STORED_PARAMS LIT_PARAMS
+#endif
+
 #ifdef HAS_CONES
 /* And the light of surfaces in voxels, with the cones of a pixel (kernels/lib/cone.cl). */
-#define VOXEL_ARGS LIT_ARGS, cone_grid, cone_set, cone_voxels, cone_cells
+#define VOXEL_ARGS STORED_ARGS, cone_grid, cone_set, cone_voxels, cone_cells
 #define VOXEL_PARAMS \
-  LIT_PARAMS, __constant ConeGrid *cone_grid, __constant Cone *cone_set, const __global float4 *restrict cone_voxels, \
+  STORED_PARAMS, __constant ConeGrid *cone_grid, __constant Cone *cone_set, const __global float4 *restrict cone_voxels, \
       const __global uchar *restrict cone_cells
 #else
-#define VOXEL_ARGS LIT_ARGS
-#define VOXEL_PARAMS LIT_PARAMS
+#define VOXEL_ARGS STORED_ARGS
+#define VOXEL_PARAMS STORED_PARAMS
 #endif
 
 #ifdef HAS_SPECULAR

@@ -5,6 +5,7 @@
  *   HAS_EMITTERS      some splats may shine
  *   HAS_ENVIRONMENT   the environment may shine
  *   HAS_SKY_MAP       it is a map
+ *   HAS_STORED_DIRECT the points hold what is known of it (kernels/lib/pools.cl); not where points are shaded themselves
  * On CPU devices these stand only where the scene has such lights; other devices have few programs for all scenes. */
 #include "lights/directional.cl"
 #include "lights/emitter.cl"
@@ -113,6 +114,32 @@ static inline float3 light_towards(Lights lights, uint i, float3 direction, floa
 }
 #endif
 
+/* Shares of discs that all know their lights add up to 1 but for rounding. */
+#define ALL_STORED 0.9999f
+
+/* What is left for rays: shares of the light of [[light]]s and emitting splats, and of the sky. */
+typedef struct ByRays {
+  float of_sources, of_sky;
+} ByRays;
+
+static inline ByRays left_for_rays(const Surface* s, Lights lights) {
+  ByRays left = {1.0f, 1.0f};
+#ifdef HAS_STORED_DIRECT
+  left.of_sources = s->direct.w < ALL_STORED ? 1.0f - s->direct.w : 0.0f;
+  left.of_sky = lights.params->sky_at_points != 0u ? 0.0f : 1.0f;
+#endif
+  return left;
+}
+
+/* Whether some light has to be sampled for what the surface's lobe makes of it. */
+static inline bool has_highlight(const Surface* s, Lights lights) {
+#ifdef HAS_LOBES
+  return has_flag(lights.materials + s->material, MATERIAL_HAS_LOBE);
+#else
+  return false;
+#endif
+}
+
 /* Irradiance H [W/m2, scaled] of the surface from all lights, one estimate; the mean over samples converges to it.
  * Adds the number of shadow rays traced to *rays. One place traces them all: the walk stands once in the code, and
  * work-items that shade different lights walk together. Where the surface has a lobe, s->highlight becomes the radiance that
@@ -120,19 +147,28 @@ static inline float3 light_towards(Lights lights, uint i, float3 direction, floa
 static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, SampleId id, Viewed viewed, float* rays) {
   float3 sum = (float3)(0.0f);
   uint source_samples = 0u, emitter_samples = 0u, environment_samples = 0u;
+  const ByRays left = left_for_rays(s, lights);
+#ifdef HAS_STORED_DIRECT
+  sum = s->direct.xyz;
+  const bool asks_sources = left.of_sources > 0.0f || has_highlight(s, lights);
+  const bool asks_sky = left.of_sky > 0.0f || has_highlight(s, lights);
+#else
+  const bool asks_sources = true, asks_sky = true;
+#endif
 #ifdef HAS_LOBES
   s->highlight = (float3)(0.0f);
 #endif
 #ifdef HAS_LIGHT_SOURCES
-  source_samples = lights.params->light_sources <= ALL_LIGHT_SOURCES ? lights.params->light_sources : 1u;
+  if (asks_sources)
+    source_samples = lights.params->light_sources <= ALL_LIGHT_SOURCES ? lights.params->light_sources : 1u;
 #endif
 #ifdef HAS_EMITTERS
-  emitter_samples = lights.params->emitters > 0u ? 1u : 0u;
+  emitter_samples = lights.params->emitters > 0u && asks_sources ? 1u : 0u;
   const float reach = emitter_samples > 0u && is_near_emitters(s, lights.params) ? lights.params->emitter_reach : 0.0f;
 #endif
 #ifdef HAS_ENVIRONMENT
   const float3 sky = load3_constant(lights.params->environment);
-  environment_samples = sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f ? SKY_SAMPLES : 0u;
+  environment_samples = asks_sky && (sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f) ? SKY_SAMPLES : 0u;
 #endif
   for (uint i = 0u; i < source_samples + emitter_samples + environment_samples; ++i) {
 #if defined(HAS_ENVIRONMENT) && defined(HAS_SKY_MAP)
@@ -158,7 +194,8 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
       faces = sample_sky(s, lights, u, i - source_samples - emitter_samples, &light);
 #endif
     if (faces && in_light(POOL_ARGS, s, &light, lights.params->step_delta, rays)) {
-      sum += light.diffuse_weight * light.irradiance;
+      sum += light.diffuse_weight * light.irradiance *
+             (i < source_samples + emitter_samples ? left.of_sources : left.of_sky);
 #ifdef HAS_LOBES
       const __global Material* material = lights.materials + s->material;
       if (has_flag(material, MATERIAL_HAS_LOBE)) {
@@ -174,7 +211,8 @@ static inline float3 direct_irradiance(POOL_PARAMS, Surface* s, Lights lights, S
   if (reach > 0.0f) {
     SampleId near = id;
     near.seed ^= NEAR_EMITTER_SEED;
-    sum += near_emitter(POOL_ARGS, s, lights.materials, lights.params, stratified4(near, 2u).xy, rays);
+    sum += left.of_sources *
+           near_emitter(POOL_ARGS, s, lights.materials, lights.params, stratified4(near, 2u).xy, rays);
   }
 #endif
   return sum;

@@ -1,6 +1,7 @@
 /* Direct irradiance of the points themselves: what the lights put into the exchange of diffuse light (method.md §4).
- * NDRange: 1-D, one work-item a point, padded; the work-item i has point first + i of the pool, if below `end`, and writes
- * irradiance[3 (first + i) ...], three scalars [W/m2, scaled as RenderParams], the mean of `samples` estimates. */
+ * NDRange: 1-D, one work-item a point, padded; the work-item i has point places[first + i] of the pool, if below `end`, and
+ * writes irradiance[3 places[first + i] ...], three scalars [W/m2, scaled as RenderParams], the mean of `samples`
+ * estimates. */
 #include "lights/lights.cl"
 
 /* The front side of a point's own disc, at its middle. */
@@ -18,11 +19,12 @@ static inline Surface surface_of_point(POOL_PARAMS, uint point) {
   return s;
 }
 
-__kernel void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, __global float* irradiance, uint first, uint end,
-                                          uint samples) {
-  const uint point = first + get_global_id(0);
-  if (point >= end)
+__kernel void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, const __global uint* places, __global float* irradiance,
+                                          uint first, uint end, uint samples) {
+  const uint i = first + get_global_id(0);
+  if (i >= end)
     return;
+  const uint point = places[i];
   float3 sum = (float3)(0.0f);
 #if defined(HAS_LIGHT_SOURCES) || defined(HAS_EMITTERS) || defined(HAS_ENVIRONMENT)
   const Lights lights = {LIGHT_ARGS};

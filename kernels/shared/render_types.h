@@ -45,7 +45,7 @@ typedef struct RenderParams {
   pg_uint emitters;      /* bytes 96-99: number of emitting splats */
   float step_delta;      /* bytes 100-103: the absolute-delta variant's delta, root cube units */
   float emitter_reach; /* bytes 104-107: root cube: how far rays look for emitting splats (kernels/lights/emitter.cl) */
-  pg_uint pad0;
+  pg_uint sky_at_points; /* bytes 108-111: 1: the points' stored direct light holds that of the environment */
   pg_uint path_states[PATH_STATES]; /* bytes 112-623: of the path tracer: the classes of paths that count */
   float emitter_low[3];             /* bytes 624-635: root cube: box around the emitting splats */
   float emitter_high[3];            /* bytes 636-647 */

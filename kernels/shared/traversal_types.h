@@ -11,6 +11,8 @@ typedef struct RayQuery {
 } RayQuery;
 
 #define NO_SPLAT 0xffffffffu
+/* Of what a point sees in a direction (kernels/radiosity/directions): the back of some splat. */
+#define BACK_SEEN (NO_SPLAT - 1u)
 
 typedef struct RayAnswer {
   float t;       /* bytes 0-3: distance of the hit, or t_max */

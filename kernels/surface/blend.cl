@@ -27,6 +27,9 @@ typedef struct Surface {
 #ifdef HAS_RADIOSITY
   float3 irradiance; /* from other surfaces */
 #endif
+#ifdef HAS_STORED_DIRECT
+  float4 direct; /* direct_pool's */
+#endif
 #ifdef HAS_CAUSTICS
   float4 caustic; /* caustic_pool's */
 #endif
@@ -42,15 +45,18 @@ typedef struct Surface {
 
 typedef struct Blend {
   float3 normal_of_first;
-  float3 normal, albedo; /* weighted sums, as are irradiance, caustic and t */
+  float3 normal, albedo; /* weighted sums, as are irradiance, direct, caustic and t */
 #ifdef HAS_RADIOSITY
   float3 irradiance;
+#endif
+#ifdef HAS_STORED_DIRECT
+  float4 direct;
 #endif
 #ifdef HAS_CAUSTICS
   float4 caustic;
 #endif
   float t, weight;          /* `weight`: of normal and t */
-  float weight_of_material; /* of albedo, irradiance and caustic */
+  float weight_of_material; /* of albedo, irradiance, direct and caustic */
   float t_first, t_end; /* discs hit in [t_first, t_end) count */
 #ifdef HAS_CLIPS
   float t_begin; /* what is clipped off a disc counts from here on */
@@ -102,6 +108,9 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, Meeting
 #ifdef HAS_RADIOSITY
   b->irradiance += of_material * irradiance_pool[splat].xyz;
 #endif
+#ifdef HAS_STORED_DIRECT
+  b->direct += of_material * direct_pool[splat];
+#endif
 #ifdef HAS_CAUSTICS
   b->caustic += of_material * caustic_pool[splat];
 #endif
@@ -130,6 +139,9 @@ static inline void blend_begin(POOL_PARAMS, Blend* b, Ray ray, Hit first) {
 #ifdef HAS_RADIOSITY
   b->irradiance = (float3)(0.0f);
 #endif
+#ifdef HAS_STORED_DIRECT
+  b->direct = (float4)(0.0f);
+#endif
 #ifdef HAS_CAUSTICS
   b->caustic = (float4)(0.0f);
 #endif
@@ -155,6 +167,9 @@ static inline void blend_end(const Blend* b, Ray ray, Surface* s) {
   s->albedo = b->albedo * scale_of_material;
 #ifdef HAS_RADIOSITY
   s->irradiance = b->irradiance * scale_of_material;
+#endif
+#ifdef HAS_STORED_DIRECT
+  s->direct = b->direct * scale_of_material;
 #endif
 #ifdef HAS_CAUSTICS
   s->caustic = b->caustic * scale_of_material;

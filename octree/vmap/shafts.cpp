@@ -126,6 +126,19 @@ bool may_belong_to(const Cluster& c, const Splat& disc) {
   return widest >= pi || vector_of(c.axis).dot(vector_of(disc.normal)) > std::cos(widest);
 }
 
+/// Whether rays off the disc `c` find this one to belong to the surface that they leave: as
+/// kernels/surface/own_surface.cl decides where they start in the middle, for the disc's highest place.
+bool belongs_to_disc(const Cluster& c, const Splat& disc) {
+  if (c.count != 1 || is_flat(disc) || is_sheet(disc)) return false;
+  const Vector normal = vector_of(disc.normal), axis = vector_of(c.axis);
+  const Vector apart = vector_of(disc.position) - vector_of(c.centre);
+  const double cosine = axis.dot(normal), radii = double{c.radius} + disc.radius;
+  if (!(cosine > static_cast<double>(SELF_HIT_COSINE))) return false;
+  const double lean = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return apart.norm() < static_cast<double>(SELF_HIT_REACH) * radii &&
+         axis.dot(apart) + disc.radius * lean < static_cast<double>(SELF_HIT_HEIGHT) * radii;
+}
+
 } // namespace
 
 Shafts::Shafts(View<Splat> splats) : tree_(build_clusters(splats, {})) {
@@ -152,12 +165,11 @@ Shafts::Box Shafts::box_of(const Splat& disc) {
   return box;
 }
 
-Obstacles Shafts::between(const Cluster& a, const Cluster& b) const {
-  const Shaft shaft(a, b);
+template <class Shaft, class Meets>
+bool Shafts::for_each_met(const Shaft& shaft, const Meets& meets) const {
   std::vector<std::uint32_t> waiting{0};
-  Obstacles found = Obstacles::none;
   for (int looks = 0; !waiting.empty(); ++looks) {
-    if (looks > most_looks) return Obstacles::own;
+    if (looks > most_looks) return false;
     const std::uint32_t at = waiting.back();
     const Cluster& node = tree_.nodes[at];
     waiting.pop_back();
@@ -166,14 +178,58 @@ Obstacles Shafts::between(const Cluster& a, const Cluster& b) const {
       waiting.push_back(node.first_child + k);
     if (node.child_count > 0) continue;
     for (std::uint32_t i = node.first_point; i < node.first_point + node.count; ++i) {
-      const Splat& splat = tree_.points[i];
-      const Box disc = box_of(splat);
-      if (!shaft.meets(disc.low, disc.high)) continue;
-      if (!may_belong_to(a, splat) && !may_belong_to(b, splat)) return Obstacles::some;
-      found = Obstacles::own;
+      const Box disc = box_of(tree_.points[i]);
+      if (shaft.meets(disc.low, disc.high) && !meets(tree_.points[i])) return false;
     }
   }
-  return found;
+  return true;
+}
+
+Obstacles Shafts::between(const Cluster& a, const Cluster& b) const {
+  Obstacles found = Obstacles::none;
+  const bool all = for_each_met(Shaft(a, b), [&](const Splat& splat) {
+    found = may_belong_to(a, splat) || may_belong_to(b, splat) ? Obstacles::own : Obstacles::some;
+    return found == Obstacles::own;
+  });
+  return !all && found != Obstacles::some ? Obstacles::own : found;
+}
+
+Cluster Shafts::with_discs(std::uint32_t k) const {
+  Cluster cluster = tree_.nodes[k];
+  add_box(cluster, boxes_[k].low, boxes_[k].high);
+  // A disc whose normal leans away from the axis has places that much lower.
+  float radius = 0.0f;
+  for (std::uint32_t i = cluster.first_point; i < cluster.first_point + cluster.count; ++i)
+    radius = std::max(radius, tree_.points[i].radius);
+  const float lower = cluster.cone < 0.5f * static_cast<float>(pi) ? radius * std::sin(cluster.cone) : radius;
+  cluster.low_along -= lower;
+  cluster.high_along += lower;
+  cluster.radius += radius;
+  return cluster;
+}
+
+Cluster Shafts::disc(std::uint32_t point) const {
+  const Splat& splat = tree_.points[point];
+  const Box box = box_of(splat);
+  Cluster cluster{};
+  cluster.first_point = point;
+  cluster.count = 1;
+  std::copy_n(box.low, 3, cluster.low);
+  std::copy_n(box.high, 3, cluster.high);
+  std::copy_n(splat.position, 3, cluster.centre);
+  std::copy_n(splat.normal, 3, cluster.axis);
+  cluster.radius = splat.radius;
+  cluster.cone = 0.0f;
+  cluster.low_along = cluster.high_along =
+      static_cast<float>(vector_of(splat.normal).dot(vector_of(splat.position)));
+  cluster.area = splat.area;
+  return cluster;
+}
+
+bool Shafts::is_open(const Cluster& from, const Cluster& light, bool has_surface) const {
+  return for_each_met(Shaft(from, light), [&](const Splat& splat) {
+    return belongs_to_disc(from, splat) || (has_surface && may_belong_to(light, splat));
+  });
 }
 
 } // namespace pointgi

@@ -22,11 +22,30 @@ public:
   /// `own` as well where the question takes too long.
   Obstacles between(const Cluster& a, const Cluster& b) const;
 
+  /// The clusters of all splats, as leaves() and discs_from() see them; in another order than `splats`
+  /// (ClusterTree::order).
+  const ClusterTree& tree() const { return tree_; }
+
+  /// Node k with the box around its discs instead of their centres, and all that a place on one of them may look over.
+  Cluster with_discs(std::uint32_t k) const;
+  /// The same of one point alone, in the tree's order.
+  Cluster disc(std::uint32_t point) const;
+
+  /// Whether no ray from a place on the discs of `from` to a place of `light` meets anything but discs that belong to
+  /// the surfaces at its ends (kernels/surface/own_surface.cl). `from`: with_discs() or disc(); only of one disc it is
+  /// known which others belong to it. `light`: of discs, too, or, not `has_surface`, a box in space. False where the
+  /// question takes too long.
+  bool is_open(const Cluster& from, const Cluster& light, bool has_surface) const;
+
 private:
   struct Box {
     float low[3], high[3];
   };
   static Box box_of(const Splat& disc);
+  /// Calls meets(splat) for the splats whose boxes the shaft meets until it returns false. False then, or where that
+  /// takes too long.
+  template <class Shaft, class Meets>
+  bool for_each_met(const Shaft& shaft, const Meets& meets) const;
 
   ClusterTree tree_;
   std::vector<Box> boxes_; ///< around the discs of each node

@@ -52,19 +52,19 @@ static inline Ray ray_off(float4 centre, float step_delta) {
   return ray;
 }
 
-/* The splat whose front is seen where `hit` is the ray's nearest of all, or NO_SPLAT: nothing, or the back of something,
- * which is black. Adds the rays traced to *rays. */
+/* The splat whose front is seen where `hit` is the ray's nearest of all; NO_SPLAT where the ray meets nothing, BACK_SEEN where
+ * it meets the back of something, which is black. Adds the rays traced to *rays. */
 static inline uint splat_seen(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit, float* rays) {
   *rays += 1.0f;
   hit = visible_hit(POOL_ARGS, ray, ends, hit, rays);
   if (hit.splat == NO_SPLAT)
     return NO_SPLAT;
   hit.splat = facing_side(POOL_ARGS, ray, hit);
-  return is_back(normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat).xyz, ray.direction) ? NO_SPLAT : hit.splat;
+  return is_back(normal_at_hit(POOL_ARGS, ray, hit.t, hit.splat).xyz, ray.direction) ? BACK_SEEN : hit.splat;
 }
 
-/* hits[HIT_AT(i - held_from, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or
- * NO_SPLAT.
+/* hits[HIT_AT(i - held_from, k, count)] = the splat whose front the point places[i] of the pool sees in direction k, or what
+ * splat_seen says.
  * NDRange: 1-D, padded, a work-item a point i, first <= i < end; with RAY_PACKETS the BEAM_RAYS points from
  * first + BEAM_RAYS get_global_id(0) on.
  *   directions  `count` cells (direction_in_cell)
