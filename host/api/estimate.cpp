@@ -90,7 +90,7 @@ private:
   }
 
   void find_shafts() {
-    shafts_ = shaft_light_of(request_, stages_);
+    shafts_ = shaft_light_of(session_, prepared_.ready.on_device, request_, stages_);
     request_.shafts = shafts_ ? &*shafts_ : nullptr;
     const StageRecord& record = stages_.records().back();
     if (!record.ran)

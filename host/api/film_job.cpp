@@ -57,10 +57,10 @@ std::string settings_text(const pointgi::Scene& scene, const std::string& integr
   const RadiositySettings& r = scene.radiosity;
   const CausticSettings& c = scene.caustics;
   const std::string radiosity =
-      fmt::format("{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {} {} {} {}", r.method, r.order,
+      fmt::format("{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {} {} {} {} {}", r.method, r.order,
                   r.vmap_samples, r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap,
-                  r.direct_light, r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.sampling,
-                  r.window, r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility, r.voxels,
+                  r.direct_light, r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.share,
+                  r.sampling, r.window, r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility, r.voxels,
                   r.passes, r.cones, r.anisotropic, r.at);
   return fmt::format("{} {} {}; {}; {} {} {} {:a} {} {}", integrator, paths,
                      name_of(scene.camera.backfaces.value_or(Backfaces::shade)), radiosity, c.photons, c.gather_k,

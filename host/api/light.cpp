@@ -89,7 +89,7 @@ Light::Light(const Prepared& prepared, const LightOptions& options, const RunCon
         write_lit_ply(file, from.scene, from.ready, lit);
         log_info("light of pass {}: {}", pass, file);
       };
-    const std::optional<ShaftLight> shafts = shaft_light_of(request, stages);
+    const std::optional<ShaftLight> shafts = shaft_light_of(session, from.ready.on_device, request, stages);
     request.shafts = shafts ? &*shafts : nullptr;
     indirect = run_indirect_stages(session, from.ready.on_device, request, stages);
     finish_exchange(parts_->request(), indirect);

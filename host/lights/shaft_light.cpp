@@ -219,11 +219,12 @@ private:
 } // namespace
 
 ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighting) {
-  ShaftLight light{std::vector<float>(3 * points.size), std::vector<std::uint8_t>(points.size), 0};
+  ShaftLight light{std::vector<float>(3 * points.size), std::vector<std::uint8_t>(points.size), {}, 0};
   if (points.size == 0) return light;
   const PointLight of(points, lighting);
   if (of.lamps() == 0 || of.lamps() > most_lamps) return light;
   const ClusterTree& tree = of.shafts().tree();
+  light.leaf.resize(points.size);
   std::vector<std::uint32_t> leaves;
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     if (tree.nodes[k].child_count == 0) leaves.push_back(k);
@@ -234,6 +235,7 @@ ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighti
       const Cluster& leaf = tree.nodes[leaves[l]];
       const bool together = of.is_known(of.shafts().with_discs(leaves[l]), shines);
       for (std::uint32_t i = leaf.first_point; i < leaf.first_point + leaf.count; ++i) {
+        light.leaf[tree.order[i]] = leaves[l];
         if (!together && !of.is_known(of.shafts().disc(i), shines)) continue;
         const std::optional<Vector> sum = of.irradiance(tree.points[i], shines);
         if (!sum) continue;
@@ -246,6 +248,23 @@ ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighti
   });
   light.known_points = static_cast<std::size_t>(std::count(light.known.begin(), light.known.end(), 1));
   return light;
+}
+
+void add_light_by_rays(View<float> by_rays, ShaftLight& light) {
+  if (light.leaf.empty()) return;
+  const auto is_dark = [&](std::size_t i) {
+    return by_rays[3 * i] == 0.0f && by_rays[3 * i + 1] == 0.0f && by_rays[3 * i + 2] == 0.0f;
+  };
+  const std::uint32_t leaves = 1 + *std::max_element(light.leaf.begin(), light.leaf.end());
+  std::vector<std::uint8_t> dark(leaves, 1);
+  for (std::size_t i = 0; i < light.known.size(); ++i)
+    if (light.known[i] == 0 && !is_dark(i)) dark[light.leaf[i]] = 0;
+  for (std::size_t i = 0; i < light.known.size(); ++i) {
+    if (light.known[i] != 0) continue;
+    std::copy_n(by_rays.data + 3 * i, 3, light.irradiance.data() + 3 * i);
+    light.known[i] = dark[light.leaf[i]];
+    light.known_points += light.known[i];
+  }
 }
 
 } // namespace pointgi

@@ -6,11 +6,17 @@
 namespace pointgi {
 
 struct ShaftLight {
-  std::vector<float> irradiance;   ///< [points x 3], W/m² divided by the lighting's scale; 0 where it is not known
-  std::vector<std::uint8_t> known; ///< [points]: 1 where it is: each lamp and [[light]] is behind the point's plane, or
-                                   ///< shines on all of its disc
+  std::vector<float> irradiance;   ///< [points x 3], W/m² divided by the lighting's scale; an estimate by rays, if there
+                                   ///< is any, where it is not known
+  std::vector<std::uint8_t> known; ///< [points]: 1 where it is: each lamp and [[light]] shines on all of the disc, or
+                                   ///< on none of it
+  std::vector<std::uint32_t> leaf; ///< [points]: of the points that lie and face together; empty: nothing was asked
   std::size_t known_points = 0;
 };
+
+/// Where rays from all points of a leaf that know nothing have found no light, they know that: `by_rays` [points x 3],
+/// of every lamp and [[light]]. It becomes their irradiance otherwise, and they go on knowing nothing.
+void add_light_by_rays(View<float> by_rays, ShaftLight& light);
 
 /// Of every [[light]] and all emitting splats together, not of the sky. `points`: the pool, discs. Nothing is known
 /// where the scene has more lamps than shafts are worth (most_lamps), of lamps that are bent, and from nearer than a few

@@ -47,6 +47,7 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
   place_buffer_ = session.upload(traced);
   cells_ = session.upload(set_.cells);
   weights_ = session.upload(set_.weights);
+  ways_ = session.allocate<float>(places_.size());
   ray_count_ = session.allocate<cl_uint>(2);
   std::vector<std::uint32_t> at(pool_points_);
   for (std::size_t i = 0; i < traced.size(); ++i)
@@ -95,7 +96,8 @@ void DeviceDirections::trace(const Band& band, const std::function<void(double)>
     session_.fill(ray_count_, cl_uint{0}, 2);
     const double seconds =
         session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves, pools_.points,
-                        place_buffer_, from, to, cells_, count, seed_, band.hits, band.first, ray_count_, step_delta_);
+                        place_buffer_, from, to, cells_, count, seed_, band.hits, band.first, ways_, ray_count_,
+                        step_delta_);
     const auto counts = session_.download(ray_count_, 2);
     rays_ += counts[0];
     beam_rays_ += counts[1];
@@ -136,7 +138,17 @@ std::vector<float> DeviceDirections::sky_share() {
                              share);
     });
   });
-  const auto found = session_.download(share, places_.size());
+  return in_order_of_places(share);
+}
+
+std::vector<float> DeviceDirections::mean_ways() {
+  if (places_.empty()) return {};
+  if (!keeps_all()) for_each_band([](const Band&) {});
+  return in_order_of_places(ways_);
+}
+
+std::vector<float> DeviceDirections::in_order_of_places(const Buffer<float>& traced) {
+  const auto found = session_.download(traced, places_.size());
   std::vector<float> of_places(places_.size());
   for (std::size_t i = 0; i < places_.size(); ++i)
     of_places[i] = found[rank_[i]];

@@ -13,7 +13,7 @@ namespace pointgi {
 
 struct DirectionsOptions {
   DirectionPattern pattern = DirectionPattern::stratified;
-  unsigned directions = 512; ///< a point
+  unsigned directions = 128; ///< a point
   unsigned seed = 1;
   float step_delta = 0.0f;                    ///< root cube units, of the absolute-delta variant only
   std::uint64_t memory_bytes = 0;             ///< what kept hits may take, 4 bytes a ray; 0: what the device has left
@@ -38,6 +38,12 @@ public:
   /// [points, in the order of `places`]: the share of an even sky that each sees.
   std::vector<float> sky_share();
 
+  /// [points, in the order of `places`, root cube units]: the harmonic mean of the lengths of each one's rays; infinity
+  /// where they meet nothing.
+  std::vector<float> mean_ways();
+  /// Whether no point is traced again at each apply.
+  bool keeps_all() const { return kept_ == places_.size(); }
+
   unsigned directions() const { return static_cast<unsigned>(set_.weights.size()); } ///< a point
   std::uint64_t rays() const { return rays_; }            ///< with those that were traced again
   std::uint64_t beam_rays() const { return beam_rays_; }  ///< of them, first hits that beams have found
@@ -57,6 +63,7 @@ private:
   void receive(const Band& band, const Buffer<cl_float4>& radiosity);
   /// Of all points, in bands: those that are kept, and then the others, traced again.
   void for_each_band(const std::function<void(const Band&)>& use);
+  std::vector<float> in_order_of_places(const Buffer<float>& traced);
 
   Session& session_;
   DevicePools pools_;
@@ -72,7 +79,7 @@ private:
   cl_uint kept_ = 0, at_once_ = 0;    ///< points of all of these; of a band that is not
   Buffer<cl_uint> place_buffer_, ray_count_;
   Buffer<std::array<float, 4>> cells_;
-  Buffer<float> weights_;
+  Buffer<float> weights_, ways_;
   Buffer<cl_float4> irradiance_;
   cl::Kernel trace_, receive_, see_sky_;
   Pace trace_pace_, receive_pace_; ///< work-items, points

@@ -1,11 +1,15 @@
 /// radiosity.method = "directions": each point looks for light in so many directions.
 #include "host/radiosity/directions.h"
 #include "host/radiosity/method.h"
+#include "host/radiosity/shared_irradiance.h"
 #include "host/radiosity/solve_by_operator.h"
 
 namespace pointgi {
 
 namespace {
+
+/// Of more points a pixel shows several, and averages itself; neighbours would take memory.
+constexpr std::size_t most_that_share = 4'000'000;
 
 class PreparedDirections : public PreparedRadiosity {
 public:
@@ -22,15 +26,26 @@ public:
       report(std::to_string(static_cast<int>(100.0 * share)) + " % of the rays");
     };
     exchange_ = std::make_unique<DeviceDirections>(session, scene.pools, scene.variant, scene.points, places_, options);
+    if (settings.share && exchange_->keeps_all() && places_.size() <= most_that_share)
+      shared_ = std::make_unique<SharedIrradiance>(points_, exchange_->mean_ways());
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
-    return solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
+    RadiosityField field = solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
+    if (!shared_) return field;
+    std::vector<float> irradiance(3 * places_.size());
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+      irradiance[i] = field.irradiance[3 * places_[i / 3] + i % 3];
+    shared_->share(irradiance, 3);
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+      field.irradiance[3 * places_[i / 3] + i % 3] = irradiance[i];
+    return field;
   }
   std::vector<float> sky_share() override {
     std::vector<float> of_pool(pool_points_);
     if (!exchange_) return of_pool;
-    const std::vector<float> share = exchange_->sky_share();
+    std::vector<float> share = exchange_->sky_share();
+    if (shared_) shared_->share(share, 1);
     for (std::size_t i = 0; i < places_.size(); ++i)
       of_pool[places_[i]] = share[i];
     return of_pool;
@@ -51,6 +66,7 @@ private:
   std::vector<std::uint32_t> places_;
   std::vector<Splat> points_;
   std::unique_ptr<DeviceDirections> exchange_; ///< absent: nothing exchanges light
+  std::unique_ptr<SharedIrradiance> shared_;   ///< absent: each point is left with what its own rays find
 };
 
 std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene& scene,

@@ -194,6 +194,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   params.samples = static_cast<pg_uint>(scene.render.spp);
   params.seed = scene.render.seed;
   params.jitter = scene.render.jitter ? 1u : 0u;
+  params.adaptive = scene.render.adaptive ? 1u : 0u;
   params.most_bounces = scene.render.max_depth ? static_cast<pg_uint>(*scene.render.max_depth) : NO_BOUNCE_LIMIT;
   params.light_sources = static_cast<pg_uint>(result.light_sources.size());
   params.emitters = static_cast<pg_uint>(result.emitters.size());

@@ -45,13 +45,14 @@ void load_exposure(const TableReader& table, RenderSettings& render) {
 void load_render(const TableReader& root, RenderSettings& render) {
   const std::optional<TableReader> table = root.table("render");
   if (!table) return;
-  table->allow_only({"size", "spp", "seed", "exposure", "max_depth", "jitter"});
+  table->allow_only({"size", "spp", "seed", "exposure", "max_depth", "jitter", "adaptive"});
   load_size(*table, render);
   if (const auto spp = table->integer("spp", limits::spp)) render.spp = static_cast<int>(*spp);
   if (const auto seed = table->integer("seed", limits::seed)) render.seed = static_cast<unsigned>(*seed);
   load_exposure(*table, render);
   if (const auto depth = table->integer("max_depth", limits::max_depth)) render.max_depth = static_cast<int>(*depth);
   if (const auto jitter = table->boolean("jitter")) render.jitter = *jitter;
+  if (const auto adaptive = table->boolean("adaptive")) render.adaptive = *adaptive;
 }
 
 void load_camera(const TableReader& root, UpAxis up, CameraSettings& camera) {
@@ -194,6 +195,7 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   if (const auto tolerance = table->number("tolerance", limits::tolerance)) radiosity.tolerance = *tolerance;
   if (const auto directions = table->integer("directions", limits::directions))
     radiosity.directions = static_cast<int>(*directions);
+  if (const auto share = table->boolean("share")) radiosity.share = *share;
   if (const auto set = table->choice("direction_set", {"stratified", "hemicube"})) radiosity.direction_set = *set;
   load_gather(*table, radiosity);
   if (const auto vmap = table->choice("vmap", {"fractions", "thesis"})) radiosity.vmap = *vmap;

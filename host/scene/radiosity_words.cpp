@@ -6,7 +6,7 @@ namespace pointgi {
 const std::vector<RadiosityWords>& radiosity_words() {
   static const std::vector<RadiosityWords> all{
       {"fmm", {"order", "vmap_samples", "point_samples", "vmap_rays", "epsilon", "tolerance", "vmap"}},
-      {"directions", {"directions", "direction_set", "tolerance"}},
+      {"directions", {"directions", "direction_set", "share", "tolerance"}},
       {"gather",
        {"sampling", "window", "reciprocity", "visibility_cache", "visibility", "voxels", "passes", "tolerance"}},
       {"cones", {"tolerance", "voxels", "cones", "anisotropic", "at"}},

@@ -46,6 +46,7 @@ struct RenderSettings {
   bool auto_exposure = false;   ///< instead chosen from the picture (host/image/exposure.h)
   std::optional<int> max_depth; ///< most surface points of a path from light to eye; absent: no limit
   bool jitter = true;
+  bool adaptive = true; ///< few samples of a pixel in which nothing changes are shaded
 };
 
 struct CameraSettings {
@@ -163,7 +164,8 @@ struct RadiositySettings {
   std::optional<long long> vmap_rays; ///< LinkOptions::most_rays; absent: default_vmap_rays (host/radiosity)
   double epsilon = 5e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
-  int directions = 512;                     ///< of method "directions": of each point
+  int directions = 128;                     ///< of method "directions": of each point
+  bool share = true;                        ///< as well: neighbours share what theirs have found
   std::string direction_set = "stratified"; ///< or "hemicube" (host/radiosity/direction_set.h)
   std::string sampling =
       "all";        ///< of method "gather": "static", "monte_carlo", "mipmap", "adaptive" (host/radiosity/gather.h)

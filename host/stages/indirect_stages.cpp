@@ -79,18 +79,10 @@ std::vector<float> light_of_sources(Session& session, const DevicePools& pools, 
   const std::size_t points = request.points.size;
   // What lamps that exchange light send is no direct light, and shafts have summed it up, too.
   const bool all_of_them = with_emitters || lighting.emitters.empty();
-  const ShaftLight* shafts = all_of_them ? request.shafts : nullptr;
-  std::vector<std::uint32_t> unknown;
-  for (std::uint32_t i = 0; shafts != nullptr && i < points; ++i)
-    if (shafts->known[i] == 0) unknown.push_back(i);
-  std::vector<float> direct = session.download(
-      direct_irradiance_of_points(session, pools, request.variant, lighting, request.frame.side, points, samples,
-                                  with_emitters, stop_asked,
-                                  shafts != nullptr ? std::optional<View<std::uint32_t>>(unknown) : std::nullopt),
-      3 * points);
-  for (std::size_t i = 0; shafts != nullptr && i < direct.size(); ++i)
-    direct[i] += shafts->irradiance[i];
-  return direct;
+  if (request.shafts != nullptr && all_of_them) return request.shafts->irradiance;
+  return session.download(direct_irradiance_of_points(session, pools, request.variant, lighting, request.frame.side,
+                                                      points, samples, with_emitters, stop_asked),
+                          3 * points);
 }
 
 std::vector<float> light_of_sky(Session& session, const DevicePools& pools, const IndirectRequest& request,
@@ -338,7 +330,8 @@ std::vector<float> direct_light_of_points(Session& session, const DevicePools& p
                 light_of_sky(session, pools, request, samples));
 }
 
-std::optional<ShaftLight> shaft_light_of(const IndirectRequest& request, StageLog& stages) {
+std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                         StageLog& stages) {
   const DeviceLighting& lighting = request.lighting;
   const auto skip = [&](const char* reason) {
     stages.skip("shafts", reason);
@@ -349,7 +342,17 @@ std::optional<ShaftLight> shaft_light_of(const IndirectRequest& request, StageLo
   if (direct_light_by_radiosity(request.scene)) return skip("radiosity.direct_light = \"radiosity\"");
   if (request.variant.patches) return skip("patches of the surface stick out of shafts");
   stages.start("shafts");
+  const StageWatch watch(session);
   ShaftLight light = light_through_shafts(request.points, lighting);
+  std::vector<std::uint32_t> unknown;
+  for (std::uint32_t i = 0; i < light.known.size(); ++i)
+    if (light.known[i] == 0) unknown.push_back(i);
+  const std::vector<float> by_rays = session.download(
+      direct_irradiance_of_points(session, pools, request.variant, without_environment(lighting), request.frame.side,
+                                  request.points.size, direct_light_samples(request, true), true, stop_asked,
+                                  View<std::uint32_t>(unknown)),
+      3 * request.points.size);
+  add_light_by_rays(by_rays, light);
   stages.finish(request.points.size, "points");
   log_info("shafts: {:.0f} % of the points see all of their lamps, or nothing; the others ask shadow rays",
            100.0 * static_cast<double>(light.known_points) / static_cast<double>(std::max<std::size_t>(1, request.points.size)));
@@ -362,10 +365,11 @@ std::optional<StoredDirect> upload_direct(Session& session, const IndirectReques
     return std::nullopt;
   std::vector<cl_float4> texels(request.points.size);
   for (std::size_t i = 0; i < texels.size(); ++i) {
+    const bool known = some_known && request.shafts->known[i] != 0;
     for (std::size_t c = 0; c < 3; ++c)
-      texels[i].s[c] = (some_known ? request.shafts->irradiance[3 * i + c] : 0.0f) +
-                       (light.sky.empty() ? 0.0f : light.sky[3 * i + c]);
-    texels[i].s[3] = some_known && request.shafts->known[i] != 0 ? 1.0f : 0.0f;
+      texels[i].s[c] =
+          (known ? request.shafts->irradiance[3 * i + c] : 0.0f) + (light.sky.empty() ? 0.0f : light.sky[3 * i + c]);
+    texels[i].s[3] = known ? 1.0f : 0.0f;
   }
   return StoredDirect{session.upload(texels), !light.sky.empty()};
 }

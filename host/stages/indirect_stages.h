@@ -42,9 +42,10 @@ struct IndirectRequest {
 /// What light is exchanged in. `exchanging`: exchanging_materials(); must live as long, as must the others.
 ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging);
 
-/// The stage `shafts`: where lamps and [[light]]s need no shadow rays. Absent, and skipped with the reason, where nothing
+/// The stage `shafts`: where lamps and [[light]]s need no shadow rays, and what rays tell of them elsewhere. Absent, and skipped with the reason, where nothing
 /// asks for it.
-std::optional<ShaftLight> shaft_light_of(const IndirectRequest& request, StageLog& stages);
+std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                         StageLog& stages);
 
 /// Direct light that pictures take from the points, as the device reads it (kernels/lib/pools.cl).
 struct StoredDirect {

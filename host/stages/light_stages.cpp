@@ -46,7 +46,7 @@ SceneLight run_light_stages(Session& session, const DevicePools& pools, const In
   SceneLight light;
   Caustics caustics;
   IndirectRequest wanted = request;
-  const std::optional<ShaftLight> shafts = shaft_light_of(request, stages);
+  const std::optional<ShaftLight> shafts = shaft_light_of(session, pools, request, stages);
   wanted.shafts = shafts ? &*shafts : nullptr;
   const auto send_photons = [&] {
     light.normal_field = normal_field_of(session, request.lighting, request.points, request.variant.patches, stages);

@@ -22,6 +22,9 @@
 typedef struct PixelSamples {
   float sums[SAMPLE_SUMS][GRID_RAYS];
   uint points[GRID_RAYS];
+#ifdef ADAPTIVE_SAMPLES
+  uint alike[GRID_RAYS]; /* kernels/render/adaptive.cl */
+#endif
 } PixelSamples;
 
 static inline void keep_sample(const float* sums, uint point, uint lane, __local PixelSamples* samples) {
@@ -29,6 +32,14 @@ static inline void keep_sample(const float* sums, uint point, uint lane, __local
     samples->sums[c][lane] = sums[c];
   samples->points[lane] = point;
 }
+
+#ifdef ADAPTIVE_SAMPLES
+static inline void copy_sample(__local PixelSamples* samples, uint from, uint to) {
+  for (int c = 0; c < SAMPLE_SUMS; ++c)
+    samples->sums[c][to] = samples->sums[c][from];
+  samples->points[to] = samples->points[from];
+}
+#endif
 
 /* In one order on every device. */
 static inline float sum_of(const __local float* of) {

@@ -2,6 +2,7 @@
  * one work-group or half of one, shaded together (method.md section 6).
  *   PIXEL_KERNEL  its name
  *   ADD_SAMPLE    the function that finds the light of one sample: add_sample or add_path
+ *   ADAPTIVE_SAMPLES  few samples may speak for all of a pixel (kernels/render/adaptive.cl)
  * NDRange: (GROUP_X * ceil(columns / GROUP_PIXELS), GROUP_Y * rows), local (GROUP_X, GROUP_Y); pixel (i, j) of the tile,
  * the image's (first_x + i, first_y + j), is shaded from hits[j * columns + i] into film[(j * columns + i) *
  * FILM_STRIDE ...]. A launch takes samples first_sample to first_sample + 31 of those a pixel has, and adds to the film
@@ -24,7 +25,20 @@ void PIXEL_KERNEL(POOL_PARAMS, LIGHT_PARAMS,
   for (int c = 0; c < SAMPLE_SUMS; ++c)
     sums[c] = 0.0f;
   uint point = FILM_NO_POINT;
-  if (in_tile && id.sample < params->samples) {
+  bool is_shaded = in_tile && id.sample < params->samples;
+#ifdef ADAPTIVE_SAMPLES
+  uint speaker = item.lane;
+  samples_of[item.pixel].alike[item.lane] =
+      !is_shaded || is_alike(POOL_ARGS, lights, hits[at].splat[item.lane], hits[at].splat[0]) ? 1u : 0u;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  uint alike = params->adaptive;
+  for (uint i = 0u; i < GRID_RAYS; ++i)
+    alike &= samples_of[item.pixel].alike[i];
+  if (alike != 0u && is_shaded)
+    speaker = speaker_of(id, params->samples, item.lane);
+  is_shaded = is_shaded && speaker == item.lane;
+#endif
+  if (is_shaded) {
     Ray ray;
     float t_start;
     sample_ray(params, id, &ray, &t_start);
@@ -33,6 +47,11 @@ void PIXEL_KERNEL(POOL_PARAMS, LIGHT_PARAMS,
   }
   keep_sample(sums, point, item.lane, samples_of + item.pixel);
   barrier(CLK_LOCAL_MEM_FENCE);
+#ifdef ADAPTIVE_SAMPLES
+  if (speaker != item.lane)
+    copy_sample(samples_of + item.pixel, speaker, item.lane);
+  barrier(CLK_LOCAL_MEM_FENCE);
+#endif
   if (in_tile)
     add_to_film(samples_of + item.pixel, item.lane, first_sample, min(params->samples - first_sample, (uint)GRID_RAYS),
                 film + FILM_STRIDE * at);

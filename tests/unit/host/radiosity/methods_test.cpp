@@ -46,6 +46,7 @@ const std::map<std::string, KeyValue>& key_values() {
       {"tolerance", {"0.0625", [](S s) { return s.tolerance == 0.0625; }}},
       {"vmap", {"\"thesis\"", [](S s) { return s.vmap == "thesis"; }}},
       {"directions", {"96", [](S s) { return s.directions == 96; }}},
+      {"share", {"false", [](S s) { return !s.share; }}},
       {"direction_set", {"\"hemicube\"", [](S s) { return s.direction_set == "hemicube"; }}},
       {"sampling", {"\"mipmap\"", [](S s) { return s.sampling == "mipmap"; }}},
       {"window", {"9", [](S s) { return s.window == 9; }}},
