@@ -104,10 +104,9 @@ private:
     constexpr unsigned part = 8;
     const unsigned samples = direct_light_samples(request_, with_emitters), few = (samples + part - 1) / part;
     const Clock::time_point begin = Clock::now();
-    std::vector<float> direct =
-        light_of_sources(session_, prepared_.ready.on_device, request_, with_emitters, few);
-    const std::vector<float> sky = with_sky ? light_of_sky(session_, prepared_.ready.on_device, request_, few)
-                                            : std::vector<float>(direct.size());
+    std::vector<float> direct = light_of_sources(session_, prepared_.ready.on_device, request_, with_emitters, few);
+    const std::vector<float> sky =
+        with_sky ? light_of_sky(session_, prepared_.ready.on_device, request_, few) : std::vector<float>(direct.size());
     for (std::size_t i = 0; i < direct.size(); ++i)
       direct[i] += sky[i];
     seconds = seconds_since(begin) * samples / few;
@@ -309,7 +308,7 @@ private:
   bool exchanges_ = false;
   std::optional<ShaftLight> shafts_;
   std::vector<float> stored_sky_; ///< IndirectLight::sky
-  std::vector<float> direct_; ///< IndirectLight::direct, where light is exchanged
+  std::vector<float> direct_;     ///< IndirectLight::direct, where light is exchanged
   PictureEstimate estimate_;
 };
 

@@ -77,16 +77,15 @@ Cluster with_radius(const Cluster& lamp, const std::vector<Splat>& points) {
   Cluster c = lamp;
   for (std::uint32_t i = lamp.first_point; i < lamp.first_point + lamp.count; ++i)
     for (int k = 0; k < 3; ++k) {
-      const float reach = points[i].radius *
-                          std::hypot(points[i].normal[(k + 1) % 3], points[i].normal[(k + 2) % 3]);
+      const float reach = points[i].radius * std::hypot(points[i].normal[(k + 1) % 3], points[i].normal[(k + 2) % 3]);
       c.low[k] = std::min(c.low[k], points[i].position[k] - reach);
       c.high[k] = std::max(c.high[k], points[i].position[k] + reach);
     }
   return c;
 }
 
-/// Where the light of a [[light]] may come from that reaches a cluster: a point, or the cluster's box shifted out of the
-/// cube, wider by the disc that is seen there.
+/// Where the light of a [[light]] may come from that reaches a cluster: a point, or the cluster's box shifted out of
+/// the cube, wider by the disc that is seen there.
 Cluster source_for(const LightSource& light, const Cluster& from) {
   Cluster c{};
   const bool is_near = light.type == LIGHT_POINT;

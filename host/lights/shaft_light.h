@@ -6,8 +6,8 @@
 namespace pointgi {
 
 struct ShaftLight {
-  std::vector<float> irradiance;   ///< [points x 3], W/m² divided by the lighting's scale; an estimate by rays, if there
-                                   ///< is any, where it is not known
+  std::vector<float> irradiance; ///< [points x 3], W/m² divided by the lighting's scale; an estimate by rays, if there
+                                 ///< is any, where it is not known
   std::vector<std::uint8_t> known; ///< [points]: 1 where it is: each lamp and [[light]] shines on all of the disc, or
                                    ///< on none of it
   std::vector<std::uint32_t> leaf; ///< [points]: of the points that lie and face together; empty: nothing was asked
@@ -19,8 +19,8 @@ struct ShaftLight {
 void add_light_by_rays(View<float> by_rays, ShaftLight& light);
 
 /// Of every [[light]] and all emitting splats together, not of the sky. `points`: the pool, discs. Nothing is known
-/// where the scene has more lamps than shafts are worth (most_lamps), of lamps that are bent, and from nearer than a few
-/// of a lamp's own discs. Sums over a lamp are those of its discs, far ones together: the error is below 1e-3.
+/// where the scene has more lamps than shafts are worth (most_lamps), of lamps that are bent, and from nearer than a
+/// few of a lamp's own discs. Sums over a lamp are those of its discs, far ones together: the error is below 1e-3.
 ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighting);
 
 /// Lamps, that is groups of emitting splats that lie apart from each other, and [[light]]s.

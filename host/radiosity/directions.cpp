@@ -94,10 +94,9 @@ void DeviceDirections::trace(const Band& band, const std::function<void(double)>
     const cl_uint from = band.first + points_an_item_ * static_cast<cl_uint>(first);
     const cl_uint to = std::min(band.end, from + points_an_item_ * static_cast<cl_uint>(size));
     session_.fill(ray_count_, cl_uint{0}, 2);
-    const double seconds =
-        session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves, pools_.points,
-                        place_buffer_, from, to, cells_, count, seed_, band.hits, band.first, ways_, ray_count_,
-                        step_delta_);
+    const double seconds = session_.launch(trace_, LaunchShape::line(size, group_), pools_.nodes, pools_.leaves,
+                                           pools_.points, place_buffer_, from, to, cells_, count, seed_, band.hits,
+                                           band.first, ways_, ray_count_, step_delta_);
     const auto counts = session_.download(ray_count_, 2);
     rays_ += counts[0];
     beam_rays_ += counts[1];

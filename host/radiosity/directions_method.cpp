@@ -78,7 +78,8 @@ std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene
 } // namespace
 
 extern const RadiosityMethod directions_method{
-    "directions", "radiosity.method = \"directions\" traces rays from each point into its own hemisphere", true,
-    prepare, false, true};
+    "directions", "radiosity.method = \"directions\" traces rays from each point into its own hemisphere",
+    true,         prepare,
+    false,        true};
 
 } // namespace pointgi

@@ -53,8 +53,8 @@ public:
   /// irradiance, and where nothing exchanges light. Nothing may be solved for after that.
   virtual std::optional<DeviceCones> cones_of(View<float>) { return std::nullopt; }
 
-  /// [points of the pool]: the share of an even sky that each point sees, its directions counted by the cosine, where the
-  /// method has found that on its way; 0 of points that exchange no light. Else empty.
+  /// [points of the pool]: the share of an even sky that each point sees, its directions counted by the cosine, where
+  /// the method has found that on its way; 0 of points that exchange no light. Else empty.
   virtual std::vector<float> sky_share() { return {}; }
 
   /// Rays that decided who sees whom until now, or in an earlier run. Solving traces only what a method does not keep.

@@ -1,6 +1,7 @@
 #pragma once
-/// Points that lie close together, for what they see, share what their rays have found (after Ward, Rubinstein and Clear,
-/// "A ray tracing solution for diffuse interreflection", 1988): noise averages out where irradiance changes slowly.
+/// Points that lie close together, for what they see, share what their rays have found (after Ward, Rubinstein and
+/// Clear, "A ray tracing solution for diffuse interreflection", 1988): noise averages out where irradiance changes
+/// slowly.
 #include "host/cloud/knn.h"
 #include "octree/splat.h"
 #include <memory>
@@ -13,9 +14,9 @@ public:
   /// that length, and no faster.
   SharedIrradiance(View<Splat> points, std::vector<float> ways);
 
-  /// `values` [points x channels]: of each point the mean over itself and its neighbours, weighted by 1 - e / least_error,
-  /// where e = distance / way + sqrt(1 - cosine of the normals) is Ward's bound of the error that the neighbour's value
-  /// has here; up to most_neighbours of them.
+  /// `values` [points x channels]: of each point the mean over itself and its neighbours, weighted by 1 - e /
+  /// least_error, where e = distance / way + sqrt(1 - cosine of the normals) is Ward's bound of the error that the
+  /// neighbour's value has here; up to most_neighbours of them.
   void share(std::vector<float>& values, std::size_t channels) const;
 
   static constexpr double least_error = 0.15;

@@ -29,7 +29,8 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
                            const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
                            const DevicePhotonMap* photons, Backfaces backfaces, const DeviceCones* cones,
                            const Buffer<cl_float4>* stored_direct, std::size_t pool_points)
-    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr, nullptr, nullptr)), params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
+    : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr, nullptr, nullptr)),
+      params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
       shade_group_(paths ? WorkGroup{} : variant.group),
       film_channels_(film_scalars(normal_field != nullptr, photons != nullptr)) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
@@ -53,9 +54,9 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
     params_.sky_at_points = 0;
   }
   points_ = pool_arguments(pools, paths ? nullptr : irradiance, normal_field, photons, paths ? nullptr : cones,
-                           !features.stored_direct         ? nullptr
-                           : stored_direct != nullptr      ? stored_direct
-                                                           : &nothing_stored_);
+                           !features.stored_direct    ? nullptr
+                           : stored_direct != nullptr ? stored_direct
+                                                      : &nothing_stored_);
   if (paths) {
     std::copy(paths->states.begin(), paths->states.end(), params_.path_states);
     params_.most_bounces = paths->most_bounces;

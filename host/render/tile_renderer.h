@@ -58,7 +58,7 @@ public:
 
 private:
   Session& session_;
-  Buffer<cl_float4> nothing_stored_; ///< where programs take what the scene has none of
+  Buffer<cl_float4> nothing_stored_;        ///< where programs take what the scene has none of
   std::vector<cl::Memory> octree_, points_; ///< OCTREE_PARAMS and POOL_PARAMS (kernels/lib/pools.cl)
   RenderParams params_;
   RayGrouping grouping_;

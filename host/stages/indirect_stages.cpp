@@ -338,7 +338,8 @@ std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& po
     return std::nullopt;
   };
   if (request.by_paths) return skip("the path tracer makes the picture");
-  if (lighting.light_sources.empty() && lighting.emitters.empty()) return skip("the scene has no lamp and no [[light]]");
+  if (lighting.light_sources.empty() && lighting.emitters.empty())
+    return skip("the scene has no lamp and no [[light]]");
   if (direct_light_by_radiosity(request.scene)) return skip("radiosity.direct_light = \"radiosity\"");
   if (request.variant.patches) return skip("patches of the surface stick out of shafts");
   stages.start("shafts");
@@ -355,11 +356,13 @@ std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& po
   add_light_by_rays(by_rays, light);
   stages.finish(request.points.size, "points");
   log_info("shafts: {:.0f} % of the points see all of their lamps, or nothing; the others ask shadow rays",
-           100.0 * static_cast<double>(light.known_points) / static_cast<double>(std::max<std::size_t>(1, request.points.size)));
+           100.0 * static_cast<double>(light.known_points) /
+               static_cast<double>(std::max<std::size_t>(1, request.points.size)));
   return light;
 }
 
-std::optional<StoredDirect> upload_direct(Session& session, const IndirectRequest& request, const IndirectLight& light) {
+std::optional<StoredDirect> upload_direct(Session& session, const IndirectRequest& request,
+                                          const IndirectLight& light) {
   const bool some_known = request.shafts != nullptr && request.shafts->known_points > 0;
   if (direct_light_by_radiosity(request.scene) || request.by_paths || (!some_known && light.sky.empty()))
     return std::nullopt;

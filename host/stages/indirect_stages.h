@@ -42,8 +42,8 @@ struct IndirectRequest {
 /// What light is exchanged in. `exchanging`: exchanging_materials(); must live as long, as must the others.
 ExchangeScene exchange_scene(const DevicePools& pools, const IndirectRequest& request, View<std::uint8_t> exchanging);
 
-/// The stage `shafts`: where lamps and [[light]]s need no shadow rays, and what rays tell of them elsewhere. Absent, and skipped with the reason, where nothing
-/// asks for it.
+/// The stage `shafts`: where lamps and [[light]]s need no shadow rays, and what rays tell of them elsewhere. Absent,
+/// and skipped with the reason, where nothing asks for it.
 std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                          StageLog& stages);
 
@@ -69,7 +69,7 @@ bool tells_sky(const RadiosityMethod& method, const IndirectRequest& request);
 /// What the stage `plan` finds: the method, and on the way to it what that method will need.
 struct ExchangePlan {
   MethodPlan choice;
-  RadiosityMap clusters;     ///< of the points that exchange light
+  RadiosityMap clusters;           ///< of the points that exchange light
   std::vector<float> sources, sky; ///< of IndirectLight::direct, where it was found on the way; else empty
 };
 

@@ -12,10 +12,10 @@ struct SceneLight {
   std::optional<PhotonLedger> ledger;            ///< absent: none was sent
 };
 
-/// `shafts`, `vmap`, that of the radiosity method, `normals`, `photon`; with caustics.feedback `normals` and `photon` first, as
-/// diffuse surfaces then pass on what the photons bring; with caustics.indirect `photon` once more at the end, from
-/// these surfaces; with both, the method and `photon` in turn for what these photons bring, until they bring next to
-/// nothing. Throws what the stages throw.
+/// `shafts`, `vmap`, that of the radiosity method, `normals`, `photon`; with caustics.feedback `normals` and `photon`
+/// first, as diffuse surfaces then pass on what the photons bring; with caustics.indirect `photon` once more at the
+/// end, from these surfaces; with both, the method and `photon` in turn for what these photons bring, until they bring
+/// next to nothing. Throws what the stages throw.
 SceneLight run_light_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                             StageLog& stages);
 

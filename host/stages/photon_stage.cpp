@@ -52,6 +52,27 @@ void fly(const IndirectRequest& request, Caustics& caustics, StageLog& stages, c
   add(ledger, *caustics.ledger);
 }
 
+/// Photons of a pilot flight from surfaces, and the least that follow, over those that the scene asks for.
+constexpr double pilot_share = 1.0 / 64.0, least_from_surfaces = 1.0 / 16.0;
+constexpr double least_pilot = 1000.0; ///< photons
+
+double sum_of(const std::array<double, 3>& power) {
+  return power[0] + power[1] + power[2];
+}
+
+/// How many from surfaces make stored photons about as strong as those that are there: the noise of the sum is least
+/// for its photons then. A pilot flight tells what surfaces send; without one, as many as the scene asks for.
+double photons_from_surfaces(const Caustics& caustics, double all,
+                             const std::function<PhotonLedger(std::uint32_t)>& fly_pilot) {
+  const double pilot = std::floor(pilot_share * all);
+  if (pilot < least_pilot || !caustics.ledger || caustics.ledger->stored == 0) return all;
+  const PhotonLedger found = fly_pilot(static_cast<std::uint32_t>(pilot));
+  if (found.stored == 0) return all;
+  const double strong = sum_of(caustics.ledger->stored_power) / static_cast<double>(caustics.ledger->stored);
+  const double to_store = sum_of(found.stored_power) / strong;
+  return std::clamp(to_store * pilot / static_cast<double>(found.stored), least_from_surfaces * all, all);
+}
+
 } // namespace
 
 Caustics run_photon_stage(Session& session, const DevicePools& pools, const IndirectRequest& request,
@@ -79,14 +100,18 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
 std::vector<float> add_indirect_photons(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                         const Buffer<cl_float4>& normal_field, View<float> radiosity, double share,
                                         std::uint32_t flight, Caustics& caustics, StageLog& stages) {
-  const long long all = request.scene.caustics.photons;
-  const long long photons = std::llround(std::min(share, 1.0) * static_cast<double>(all));
   const std::size_t before = caustics.photons.size();
-  fly(request, caustics, stages, [&](const FlightControl& control) {
+  const auto send = [&](std::uint32_t photons, const FlightControl& control) {
     return send_photons_from_surfaces(session, pools, request.variant, request.lighting, radiosity, request.points,
-                                      normal_field, static_cast<std::uint32_t>(photons), flight, request.frame.side,
-                                      control);
-  });
+                                      normal_field, photons, flight, request.frame.side, control);
+  };
+  if (caustics.from_surfaces == 0.0)
+    caustics.from_surfaces = photons_from_surfaces(caustics, static_cast<double>(request.scene.caustics.photons),
+                                                   [&](std::uint32_t photons) {
+                                                     return send(photons, {stop_asked, {}, most_stored_photons}).ledger;
+                                                   });
+  const auto photons = static_cast<std::uint32_t>(std::llround(std::min(share, 1.0) * caustics.from_surfaces));
+  fly(request, caustics, stages, [&](const FlightControl& control) { return send(photons, control); });
   return irradiance_by_photons({caustics.photons.data() + before, caustics.photons.size() - before}, request.points);
 }
 

@@ -8,6 +8,7 @@ namespace pointgi {
 struct Caustics {
   std::vector<Photon> photons;        ///< stored on diffuse surfaces
   std::optional<PhotonLedger> ledger; ///< absent: the stage did not run
+  double from_surfaces = 0.0; ///< photons of a flight from surfaces that sends all of their light; 0: not known yet
 };
 
 /// Sends photons where the scene has specular splats, light and caustics.photons > 0, and says why not where it does

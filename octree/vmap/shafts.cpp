@@ -220,8 +220,7 @@ Cluster Shafts::disc(std::uint32_t point) const {
   std::copy_n(splat.normal, 3, cluster.axis);
   cluster.radius = splat.radius;
   cluster.cone = 0.0f;
-  cluster.low_along = cluster.high_along =
-      static_cast<float>(vector_of(splat.normal).dot(vector_of(splat.position)));
+  cluster.low_along = cluster.high_along = static_cast<float>(vector_of(splat.normal).dot(vector_of(splat.position)));
   cluster.area = splat.area;
   return cluster;
 }
