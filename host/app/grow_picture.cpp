@@ -154,8 +154,17 @@ private:
     if (grown.samples == 0) return grown;
     const RunControl to_the_end{}; // what is there is kept
     const RunScope scope(to_the_end);
+    const bool to_write = written_samples_ != film_->samples() || grown.totals.interrupted;
+    if (to_write) {
+      job_.set_samples(grown.samples);
+      output_.begin(job_);
+      film_->resolve([&](const Band& band) { output_.take(band); });
+      denoise_in_stage(context_.stages, job_.window(), output_);
+    } else if (output_.denoised()) {
+      context_.stages.skip("denoise", "the stage render wrote the last picture, denoised");
+    }
     context_.stages.start("image");
-    if (written_samples_ != film_->samples() || grown.totals.interrupted) write();
+    if (to_write) output_.finish(now_seconds());
     const PixelWindow& w = job_.window();
     context_.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
     return grown;
@@ -171,6 +180,13 @@ private:
 };
 
 } // namespace
+
+void denoise_in_stage(StageLog& stages, const PixelWindow& window, PictureOutput& output) {
+  if (!output.denoises()) return;
+  stages.start("denoise");
+  output.denoise([](double share) { report_progress(share); });
+  stages.finish(static_cast<std::uint64_t>(window.x1 - window.x0) * (window.y1 - window.y0), "pixels");
+}
 
 GrownPicture grow_picture(api::Context::Parts& context, api::FilmJob& job, const PictureGoal& goal,
                           PictureOutput& output) {

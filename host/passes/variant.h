@@ -40,6 +40,7 @@ struct SceneFeatures {
   unsigned gather_k = 0;       ///< of the picture: photons an estimate of caustics; 0: there are none
   bool sky_map = false;        ///< light from all around is a map
   unsigned cone_texels = 0;    ///< of the picture: of a voxel, where pixels gather light between surfaces by cones
+  bool auxiliary = false;      ///< of the picture: its film has what guides a denoiser
 
   bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };

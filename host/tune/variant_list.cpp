@@ -250,16 +250,21 @@ std::vector<ProgramUse> all_programs() {
     add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);
     if (!usual_walk || !usual_group) continue;
-    for (const SceneFeatures& features : gpu_picture_features())
-      add(shade_program(v, features), cpu, gpu);
+    for (SceneFeatures features : gpu_picture_features())
+      for (const bool auxiliary : {false, true}) {
+        features.auxiliary = auxiliary;
+        add(shade_program(v, features), cpu, gpu);
+      }
     for (const bool some_paths : {false, true})
       for (const bool specular : {false, true})
-        for (const bool sky_map : {false, true}) {
-          SceneFeatures features = traced;
-          if (!specular) features.materials = features.material_flags = 0;
-          features.sky_map = sky_map;
-          add(path_program(v, features, some_paths), cpu, gpu);
-        }
+        for (const bool sky_map : {false, true})
+          for (const bool auxiliary : {false, true}) {
+            SceneFeatures features = traced;
+            if (!specular) features.materials = features.material_flags = 0;
+            features.sky_map = sky_map;
+            features.auxiliary = auxiliary;
+            add(path_program(v, features, some_paths), cpu, gpu);
+          }
     for (const PhotonStart start : {PhotonStart::aimed, PhotonStart::equal_power, PhotonStart::from_surfaces})
       for (const bool from_lights : {false, true}) { // or from emitting splats and the environment alone
         SceneFeatures features = traced;
