@@ -82,8 +82,9 @@ namespace {
 /// The film, its samples and what they cost.
 class Growth {
 public:
-  Growth(api::Context::Parts& context, api::FilmJob& job, PictureGoal goal, PictureOutput& output)
-      : context_(context), job_(job), goal_(goal), output_(output),
+  Growth(api::Context::Parts& context, api::FilmJob& job, PictureGoal goal, PictureOutput& output,
+         const RunControl& control)
+      : context_(context), job_(job), goal_(goal), output_(output), control_(control),
         film_(std::make_unique<GrowingFilm>(job.growing())) {}
 
   GrownPicture run() {
@@ -152,7 +153,7 @@ private:
     grown.samples = static_cast<int>(film_->samples());
     grown.noise = relative_noise(*film_, job_.channels());
     if (grown.samples == 0) return grown;
-    const RunControl to_the_end{}; // what is there is kept
+    const RunControl to_the_end{{}, control_.progress, control_.log}; // what is there is kept
     const RunScope scope(to_the_end);
     const bool to_write = written_samples_ != film_->samples() || grown.totals.interrupted;
     if (to_write) {
@@ -174,6 +175,7 @@ private:
   api::FilmJob& job_;
   PictureGoal goal_;
   PictureOutput& output_;
+  const RunControl& control_;
   std::unique_ptr<GrowingFilm> film_;
   double written_at_ = 0.0;
   pg_uint written_samples_ = 0; ///< of the picture that was written last; a preview has none
@@ -189,8 +191,8 @@ void denoise_in_stage(StageLog& stages, const PixelWindow& window, PictureOutput
 }
 
 GrownPicture grow_picture(api::Context::Parts& context, api::FilmJob& job, const PictureGoal& goal,
-                          PictureOutput& output) {
-  return Growth(context, job, goal, output).run();
+                          PictureOutput& output, const RunControl& control) {
+  return Growth(context, job, goal, output, control).run();
 }
 
 } // namespace pointgi

@@ -119,7 +119,7 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, c
     if (before_light) before_light(goal, cost);
     made.light = light_of(run, in_time);
     api::FilmJob job(*made.light->parts(), run.film);
-    const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output);
+    const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output, run.control);
     made.totals = grown.totals;
     made.interrupted = grown.totals.interrupted;
     if (grown.samples > 0) {

@@ -1,5 +1,4 @@
 #include "host/app/picture_output.h"
-#include "host/run.h"
 #include "octree/clock.h"
 #include <new>
 
@@ -47,9 +46,7 @@ void PictureOutput::denoise(const std::function<void(double)>& progress) {
   writer_->write(*rows_);
   rows_.reset();
   denoised_->seconds += seconds_since(begun);
-  if (!denoised_->failure) return;
-  denoiser_.reset();
-  log_warning("the picture is written as it was rendered: {}", denoised_->failure->what());
+  if (denoised_->failure) denoiser_.reset();
 }
 
 void PictureOutput::finish(double seconds) {

@@ -29,7 +29,7 @@ public:
   void finish(double seconds);
 
   /// Between the last take() and finish(), which does it where this was not called. `progress`: share done, 0..1. Where
-  /// the library fails, the log is told, and this and all later pictures are written as they were rendered.
+  /// the library fails, this and all later pictures are written as they were rendered, and denoised() has the failure.
   void denoise(const std::function<void(double)>& progress);
 
   /// All three, of a film that has its rows.

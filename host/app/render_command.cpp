@@ -289,7 +289,10 @@ ExitCode run_render(const RenderOptions& options) {
     spdlog::warn("--stats and --trace are not written, as the light was not solved");
   run.end_progress();
   std::printf("%s\n%s\n", output.exr_path().c_str(), output.png_path().c_str());
-  if (output.denoised() && output.denoised()->failure) throw Error(*output.denoised()->failure);
+  if (output.denoised() && output.denoised()->failure) {
+    spdlog::warn("{} is written as it was rendered", output.exr_path());
+    throw Error(*output.denoised()->failure);
+  }
   if (made.interrupted) {
     spdlog::warn("interrupted: {}", made.told);
     return ExitCode::interrupted;

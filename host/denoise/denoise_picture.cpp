@@ -61,6 +61,20 @@ void scale(std::vector<float>& image, int exponent) {
     value = std::isnan(value) ? 0.0f : std::clamp(std::ldexp(value, exponent), 0.0f, most);
 }
 
+/// Light that is seen directly has no noise, and may have details that no guide shows: a pixel keeps what was rendered
+/// by the share of it. The filter is given all of the light nevertheless: without the sky, edges before the sky would
+/// be softened, and be dark beside a sky that is not.
+void keep_emission(const std::vector<float>& rendered, const std::vector<float>& emission,
+                   std::vector<float>& denoised) {
+  for (std::size_t i = 0; i < denoised.size(); i += 3) {
+    const double all = double{rendered[i]} + double{rendered[i + 1]} + double{rendered[i + 2]};
+    const double seen = double{emission[i]} + double{emission[i + 1]} + double{emission[i + 2]};
+    const double share = all > 0.0 ? std::min(1.0, seen / all) : 0.0;
+    for (std::size_t k = i; k < i + 3; ++k)
+      denoised[k] = static_cast<float>(share * double{rendered[k]} + (1.0 - share) * double{denoised[k]});
+  }
+}
+
 /// Albedo and normal without noise.
 struct Guides {
   std::vector<float> albedo, normal;
@@ -105,20 +119,15 @@ void denoise_picture(const Denoiser& denoiser, const std::vector<ChannelName>& c
 
   std::vector<std::pair<Places, std::vector<float>>> denoised;
   for (const Places& places : lights) {
-    std::vector<float> light = interleaved(rows, places, 0.0f, most), sharp;
-    if (places == direct) {
-      sharp = interleaved(rows, emission, 0.0f, most);
-      for (std::size_t i = 0; i < light.size(); ++i)
-        light[i] = std::max(0.0f, light[i] - sharp[i]);
-    }
+    std::vector<float> light = interleaved(rows, places, 0.0f, most);
+    const std::vector<float> rendered = places == direct ? light : std::vector<float>();
     if (const std::optional<int> exponent = exponent_of(light)) { // black has no noise
       scale(light, *exponent);
       images.light = images.output = light.data();
       filter(images);
       scale(light, -*exponent);
     }
-    for (std::size_t i = 0; i < sharp.size(); ++i)
-      light[i] = std::min(light[i] + sharp[i], most);
+    if (places == direct) keep_emission(rendered, interleaved(rows, emission, 0.0f, most), light);
     denoised.emplace_back(places, std::move(light));
   }
   for (const auto& [places, light] : denoised)

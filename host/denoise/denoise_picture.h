@@ -12,8 +12,9 @@ const std::vector<ChannelName>& noisy_channels();
 /// Scalars a pixel that denoise_picture() holds beside the picture, at most.
 constexpr std::size_t denoise_scalars = 24;
 
-/// Denoises the light in some rows of a picture: Direct without Denoise.Emission, Diffuse, Specular and Caustic, as
-/// many as there are, each by itself and guided by Denoise.Albedo and Denoise.N. Then R, G and B are their sum, and
+/// Denoises the light in some rows of a picture: Direct, Diffuse, Specular and Caustic, as many as there are, each by
+/// itself and guided by Denoise.Albedo and Denoise.N. Pixels of Direct keep what was rendered by the share of
+/// Denoise.Emission, so that lamps and sky stay sharp. Then R, G and B are the sum of these lights, and
 /// noisy_channels(), the last of `channels`, hold what R, G and B were. All other channels stay. Finite everywhere
 /// where the sum fits in a float. `progress`: share done, 0..1. Throws Error as Denoiser::filter(), and leaves R, G, B
 /// and the light as rendered then.

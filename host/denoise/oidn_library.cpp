@@ -73,6 +73,15 @@ bool is_not_found(const std::string& message, const std::string& name) {
   return message.rfind(name + ": cannot open shared object file: No such file", 0) == 0;
 }
 
+/// As the program is.
+bool is_for_this_machine(const ElfW(Ehdr) & library) {
+  std::ifstream in("/proc/self/exe", std::ios::binary);
+  ElfW(Ehdr) own;
+  if (!in.read(reinterpret_cast<char*>(&own), sizeof own)) return true; // the loader will say
+  return library.e_ident[EI_CLASS] == own.e_ident[EI_CLASS] && library.e_ident[EI_DATA] == own.e_ident[EI_DATA] &&
+         library.e_machine == own.e_machine;
+}
+
 std::string path_of(void* library, const std::string& name) {
   const link_map* map = nullptr;
   if (dlinfo(library, RTLD_DI_LINKMAP, &map) != 0 || map == nullptr || *map->l_name == '\0') return name;
@@ -100,8 +109,7 @@ std::string why_not_loadable(const std::string& file) {
   ElfW(Ehdr) header;
   if (!in.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
     return "is no library";
-  if (header.e_ident[EI_CLASS] != (sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32))
-    return "is a library for another kind of machine";
+  if (!is_for_this_machine(header)) return "is a library for another kind of machine";
   if (header.e_type != ET_DYN || header.e_phentsize != sizeof(ElfW(Phdr))) return "is no library";
   for (std::uint64_t i = 0; i < header.e_phnum; ++i) {
     ElfW(Phdr) part;
@@ -123,7 +131,7 @@ OidnLibrary load_oidn() {
     if (library == nullptr) {
       const char* const message = dlerror();
       const std::string text = message != nullptr ? message : "no reason is given";
-      if (is_not_found(text, name)) continue;
+      if (name[0] != '/' && is_not_found(text, name)) continue;
       throw unusable(name + " cannot be loaded: " + text);
     }
     const std::string file = path_of(library, name);
