@@ -282,7 +282,7 @@ private:
     // Launches are as long as those of the small picture would have grown to be.
     const double a_pixel = std::max(totals.eye_seconds, totals.device_seconds - totals.eye_seconds) / drawn;
     const std::size_t film_channels =
-        film_scalars(light_.light.normal_field.has_value(), light_.light.photons.has_value());
+        film_scalars(light_.light.normal_field.has_value(), light_.light.photons.has_value(), film_.auxiliary);
     const double columns = std::clamp(launch_seconds / std::max(1e-9, band_rows * a_pixel), 16.0,
                                       std::min(4096.0, std::max(16.0, double(window.x1 - window.x0))));
     StageEstimate& render = add(

@@ -15,6 +15,8 @@ struct FilmOptions {
   std::optional<std::array<int, 4>> window;
   /// Of path-traced light: the paths that count, e.g. "LDE" (docs/reference.md, --paths); empty: all.
   std::string paths;
+  /// Channels that guide a denoiser, too: "Denoise.Albedo.R", "Denoise.N.X", "Denoise.Emission.R", ...
+  bool auxiliary = false;
 };
 
 /// Named channels of floats: "R", "G", "B" (radiance [W/m²/sr]), "A" (coverage), "Direct.R", "Diffuse.R", "Albedo.R",

@@ -100,6 +100,7 @@ FilmJob::FilmJob(Light::Parts& light, const FilmOptions& options)
       RenderRequest{window_of(options, view_.render), lighting_, ready.frame, ready.ids, ready.choice.variant, paths});
   request_->first_ids = ready.first_ids;
   request_->backfaces = view_.camera.backfaces.value_or(Backfaces::shade);
+  request_->auxiliary = options.auxiliary;
   if (light.irradiance.size > 0) {
     request_->irradiance = &light.irradiance;
     request_->cones = light.light.indirect.at_pixels ? &*light.light.indirect.at_pixels : nullptr;
@@ -114,7 +115,8 @@ FilmJob::FilmJob(Light::Parts& light, const FilmOptions& options)
 }
 
 std::vector<ChannelName> FilmJob::channels() const {
-  return film_channels(request_->has_indirect(), request_->has_specular(), request_->has_caustics());
+  return film_channels(request_->has_indirect(), request_->has_specular(), request_->has_caustics(),
+                       request_->auxiliary);
 }
 
 PictureAttributes FilmJob::attributes() const {

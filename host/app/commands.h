@@ -35,6 +35,7 @@ struct RenderOptions : LightOptions {
   std::optional<double> error;   ///< --error: relMSE that is enough
   std::string trade;             ///< trade.json, or its folder; empty: that which is kept of the scene
   bool progressive = false;      ///< a first picture soon, and better ones after it
+  bool denoise = false;          ///< by Open Image Denoise
 };
 
 /// The picture that `info` tells the cost of.

@@ -82,8 +82,9 @@ namespace {
 /// The film, its samples and what they cost.
 class Growth {
 public:
-  Growth(api::Context::Parts& context, api::FilmJob& job, PictureGoal goal, PictureOutput& output)
-      : context_(context), job_(job), goal_(goal), output_(output),
+  Growth(api::Context::Parts& context, api::FilmJob& job, PictureGoal goal, PictureOutput& output,
+         const RunControl& control)
+      : context_(context), job_(job), goal_(goal), output_(output), control_(control),
         film_(std::make_unique<GrowingFilm>(job.growing())) {}
 
   GrownPicture run() {
@@ -152,10 +153,19 @@ private:
     grown.samples = static_cast<int>(film_->samples());
     grown.noise = relative_noise(*film_, job_.channels());
     if (grown.samples == 0) return grown;
-    const RunControl to_the_end{}; // what is there is kept
+    const RunControl to_the_end{{}, control_.progress, control_.log}; // what is there is kept
     const RunScope scope(to_the_end);
+    const bool to_write = written_samples_ != film_->samples() || grown.totals.interrupted;
+    if (to_write) {
+      job_.set_samples(grown.samples);
+      output_.begin(job_);
+      film_->resolve([&](const Band& band) { output_.take(band); });
+      denoise_in_stage(context_.stages, job_.window(), output_);
+    } else if (output_.denoised()) {
+      context_.stages.skip("denoise", "the stage render wrote the last picture, denoised");
+    }
     context_.stages.start("image");
-    if (written_samples_ != film_->samples() || grown.totals.interrupted) write();
+    if (to_write) output_.finish(now_seconds());
     const PixelWindow& w = job_.window();
     context_.stages.finish(static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0), "pixels");
     return grown;
@@ -165,6 +175,7 @@ private:
   api::FilmJob& job_;
   PictureGoal goal_;
   PictureOutput& output_;
+  const RunControl& control_;
   std::unique_ptr<GrowingFilm> film_;
   double written_at_ = 0.0;
   pg_uint written_samples_ = 0; ///< of the picture that was written last; a preview has none
@@ -172,9 +183,16 @@ private:
 
 } // namespace
 
+void denoise_in_stage(StageLog& stages, const PixelWindow& window, PictureOutput& output) {
+  if (!output.denoises()) return;
+  stages.start("denoise");
+  output.denoise([](double share) { report_progress(share); });
+  stages.finish(static_cast<std::uint64_t>(window.x1 - window.x0) * (window.y1 - window.y0), "pixels");
+}
+
 GrownPicture grow_picture(api::Context::Parts& context, api::FilmJob& job, const PictureGoal& goal,
-                          PictureOutput& output) {
-  return Growth(context, job, goal, output).run();
+                          PictureOutput& output, const RunControl& control) {
+  return Growth(context, job, goal, output, control).run();
 }
 
 } // namespace pointgi

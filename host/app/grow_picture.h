@@ -27,9 +27,13 @@ struct GrownPicture {
 
 /// Adds samples, and writes the picture whenever that costs little, until the goal is reached or the run is to stop.
 /// After an interruption the best picture is written that has all of its rows; none where there is none, which leaves
-/// `output` as it was. The stage `render`, then `image`. Throws as FilmJob::render and PictureOutput::write.
+/// `output` as it was. `control`: hears of the stages after the last sample. The stage `render`, `denoise` where asked
+/// for, then `image`. Throws as FilmJob::render and PictureOutput::write.
 GrownPicture grow_picture(api::Context::Parts& context, api::FilmJob& job, const PictureGoal& goal,
-                          PictureOutput& output);
+                          PictureOutput& output, const RunControl& control = {});
+
+/// The stage `denoise` of the picture that has begun, where it is to be.
+void denoise_in_stage(StageLog& stages, const PixelWindow& window, PictureOutput& output);
 
 /// relMSE of the picture against its own mean by its pixels' variances.
 double relative_noise(const GrowingFilm& film, const std::vector<ChannelName>& channels);

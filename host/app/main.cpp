@@ -141,6 +141,10 @@ void add_render_options(CLI::App& command, RenderOptions& render) {
   command.add_flag(
       "--progressive", render.progressive,
       "write a first picture soon, and better ones after it, as --time does, and as is done on a terminal");
+  command.add_flag(
+      "--denoise", render.denoise,
+      "take the noise out of the picture with Intel Open Image Denoise 2, which is loaded from the file or "
+      "folder that POINTGI_OIDN names, else from where the loader looks");
   command.add_option("--dump-kernels", render.dump_folder, "write the kernels as compiled to this folder");
 }
 

@@ -30,34 +30,54 @@ std::string told_of(const GrownPicture& grown, const PictureGoal& goal) {
   return text;
 }
 
-std::uint64_t film_bytes(const api::Prepared& prepared, double pixels, bool has_open_goal) {
+/// Of a picture that is to be denoised, and what that takes besides.
+double denoise_bytes(double pixels) {
+  const std::size_t channels = film_channels(true, true, true, true).size() + noisy_channels().size();
+  return pixels * static_cast<double>((channels + denoise_scalars) * sizeof(float));
+}
+
+/// Before a picture is rendered that cannot be denoised.
+void require_denoise_memory(double pixels) {
+  const std::uint64_t available = available_memory().value_or(std::numeric_limits<std::uint64_t>::max());
+  if (denoise_bytes(pixels) <= static_cast<double>(available)) return;
+  throw Error(
+      ErrorKind::memory,
+      fmt::format("--denoise holds the whole picture, {} in memory, of which {} are available; leave it out, or "
+                  "set a smaller --size",
+                  megabytes(static_cast<std::uint64_t>(denoise_bytes(pixels))), megabytes(available)));
+}
+
+std::uint64_t film_bytes(const api::Prepared& prepared, double pixels, bool has_open_goal, bool denoised) {
   const bool specular = prepared.parts()->ready.lighting.has_specular();
   const bool photons = specular && prepared.parts()->scene.caustics.photons > 0;
   const double films = has_open_goal ? 2.0 : 1.0;
   return static_cast<std::uint64_t>(films * pixels *
-                                    static_cast<double>(film_scalars(specular, photons) * sizeof(float)));
+                                        static_cast<double>(film_scalars(specular, photons, denoised) * sizeof(float)) +
+                                    (denoised ? denoise_bytes(pixels) : 0.0));
 }
 
 /// Before an older picture is replaced by a preview of one that cannot be made.
 void require_film_memory(const PictureRun& run, bool has_open_goal) {
-  if (film_fits(run.prepared, run.pixels, has_open_goal)) return;
+  const bool denoised = run.film.auxiliary;
+  if (film_fits(run.prepared, run.pixels, has_open_goal, denoised)) return;
   throw Error(ErrorKind::memory,
               fmt::format("a picture that gets better keeps a film of {} in memory, of which {} are available; leave "
                           "out --time, --error and --progressive, or set a smaller --size",
-                          megabytes(film_bytes(run.prepared, run.pixels, has_open_goal)),
+                          megabytes(film_bytes(run.prepared, run.pixels, has_open_goal, denoised)),
                           megabytes(available_memory().value_or(0))));
 }
 
 } // namespace
 
-bool film_fits(const api::Prepared& prepared, double pixels, bool has_open_goal) {
-  return film_bytes(prepared, pixels, has_open_goal) <=
+bool film_fits(const api::Prepared& prepared, double pixels, bool has_open_goal, bool denoised) {
+  return film_bytes(prepared, pixels, has_open_goal, denoised) <=
          available_memory().value_or(std::numeric_limits<std::uint64_t>::max());
 }
 
 MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output) {
   api::Context::Parts& context = *run.context.parts();
   MadePictureFiles made;
+  if (output.denoises()) require_denoise_memory(run.pixels);
   made.light = light_of(run, run.control);
   api::FilmJob job(*made.light->parts(), run.film);
   output.begin(job);
@@ -68,6 +88,7 @@ MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& outp
   const double render_seconds = context.stages.records().back().seconds;
   const RunControl to_the_end{{}, run.control.progress, run.control.log}; // what is there is kept
   const RunScope scope(to_the_end);
+  denoise_in_stage(context.stages, job.window(), output);
   context.stages.start("image");
   output.finish(render_seconds);
   const PixelWindow& w = job.window();
@@ -98,7 +119,7 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, c
     if (before_light) before_light(goal, cost);
     made.light = light_of(run, in_time);
     api::FilmJob job(*made.light->parts(), run.film);
-    const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output);
+    const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output, run.control);
     made.totals = grown.totals;
     made.interrupted = grown.totals.interrupted;
     if (grown.samples > 0) {

@@ -30,8 +30,8 @@ MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& outp
 using BeforeLight = std::function<void(PictureGoal& goal, const PreviewCost& preview)>;
 
 /// Whether the machine can hold the film of a picture that gets better; of an open goal a second one besides, as
-/// samples that are less than a pass are replaced by others.
-bool film_fits(const api::Prepared& prepared, double pixels, bool has_open_goal);
+/// samples that are less than a pass are replaced by others; of a picture that is `denoised` what that takes.
+bool film_fits(const api::Prepared& prepared, double pixels, bool has_open_goal, bool denoised);
 
 /// A preview, then the picture whenever it is better (host/app/grow_picture.h). Throws Error(interrupted) when that
 /// comes before the preview, Error(memory) where its film does not fit beside what the machine holds, and as Light,

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
+#include <omp.h>
 #include <set>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -88,7 +89,8 @@ double kernel_seconds(const Session& session) {
   return seconds;
 }
 
-void write_reports(const RenderOptions& options, const api::Light::Parts& light, const RenderTotals& totals) {
+void write_reports(const RenderOptions& options, const api::Light::Parts& light, const RenderTotals& totals,
+                   const std::optional<DenoisedPictures>& denoised) {
   const api::Prepared::Parts& prepared = *light.prepared;
   const api::Context::Parts& context = *prepared.context;
   if (!options.stats_file.empty()) {
@@ -96,6 +98,7 @@ void write_reports(const RenderOptions& options, const api::Light::Parts& light,
     stats.command = "render";
     stats.integrator = options.integrator;
     stats.render = totals;
+    stats.denoised = denoised;
     stats.photons = light.light.ledger;
     const Frame& frame = prepared.ready.frame;
     stats.photon_watts = prepared.ready.lighting.radiance.scale * frame.side * frame.side;
@@ -208,7 +211,7 @@ constexpr double most_growing_pixels = 1 << 23;
 bool grows(const RenderOptions& options, const api::Prepared& prepared, double pixels) {
   if (options.progressive || has_open_goal(options)) return true;
   return !options.quiet && isatty(STDERR_FILENO) != 0 && pixels <= most_growing_pixels &&
-         film_fits(prepared, pixels, false);
+         film_fits(prepared, pixels, false, options.denoise);
 }
 
 PictureGoal goal_of(const RenderOptions& options, const std::optional<ChosenSetting>& setting, int samples) {
@@ -220,10 +223,18 @@ PictureGoal goal_of(const RenderOptions& options, const std::optional<ChosenSett
   return goal;
 }
 
+/// Null where none is asked for. Throws Error(usage) where there is none.
+std::unique_ptr<Denoiser> denoiser_for(const RenderOptions& options) {
+  if (!options.denoise) return nullptr;
+  try_denoiser();
+  return std::make_unique<Denoiser>(omp_get_max_threads());
+}
+
 } // namespace
 
 ExitCode run_render(const RenderOptions& options) {
   CommandRun run(options.quiet);
+  std::unique_ptr<Denoiser> denoiser = denoiser_for(options); // before anything has taken time, or made threads
   StageLog stages;
   stages.start("scene");
   api::Scene scene = checked_scene(options);
@@ -231,6 +242,7 @@ ExitCode run_render(const RenderOptions& options) {
   api::FilmOptions film;
   film.window = window_of(options, description.render);
   film.paths = options.paths;
+  film.auxiliary = options.denoise;
   const double pixels = pixels_of(film, description.render);
   stages.finish(description.clouds.size() + description.shapes.size(), "objects");
 
@@ -258,9 +270,10 @@ ExitCode run_render(const RenderOptions& options) {
     };
   else if (of_kind)
     tell_of_kind(options, prepared, "`pointgi info` tells the seconds");
-  PictureOutput output(output_of(options), description.render.auto_exposure
-                                               ? std::nullopt
-                                               : std::optional<double>(description.render.exposure));
+  PictureOutput output(output_of(options),
+                       description.render.auto_exposure ? std::nullopt
+                                                        : std::optional<double>(description.render.exposure),
+                       std::move(denoiser));
   const PictureRun picture{context, prepared, film, options.integrator == "path", pixels, run.control()};
   const MadePictureFiles made =
       growing ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), before_light, output)
@@ -271,11 +284,15 @@ ExitCode run_render(const RenderOptions& options) {
   if (made.light && !made.interrupted)
     warn_of_exposure(output.png_light(), prepared.parts()->scene, prepared.parts()->ready);
   if (made.light)
-    write_reports(options, *made.light->parts(), made.totals);
+    write_reports(options, *made.light->parts(), made.totals, output.denoised());
   else if (!options.stats_file.empty() || !options.trace_file.empty())
     spdlog::warn("--stats and --trace are not written, as the light was not solved");
   run.end_progress();
   std::printf("%s\n%s\n", output.exr_path().c_str(), output.png_path().c_str());
+  if (output.denoised() && output.denoised()->failure) {
+    spdlog::warn("{} is written as it was rendered", output.exr_path());
+    throw Error(*output.denoised()->failure);
+  }
   if (made.interrupted) {
     spdlog::warn("interrupted: {}", made.told);
     return ExitCode::interrupted;

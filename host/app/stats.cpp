@@ -101,6 +101,11 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   if (stats.indirect != nullptr && !stats.indirect->from_surfaces.empty())
     add_radiosity(*stats.indirect, stats.scene->radiosity, out);
   if (stats.photons) out["photons"] = photons_json(*stats.photons, stats.photon_watts);
+  if (stats.denoised)
+    out["denoise"] = {{"library", stats.denoised->file},
+                      {"version", stats.denoised->version},
+                      {"seconds", stats.denoised->seconds},
+                      {"failed", stats.denoised->failure.has_value()}};
   out["stages"] = json::array();
   for (const StageRecord& s : stages.records())
     out["stages"].push_back({{"name", s.name},

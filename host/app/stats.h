@@ -1,4 +1,5 @@
 #pragma once
+#include "host/app/picture_output.h"
 #include "host/cl/session.h"
 #include "host/photon/trace_photons.h"
 #include "host/render/render.h"
@@ -16,10 +17,11 @@ struct Stats {
   const Scene* scene = nullptr;
   OctreeSummary octree;
   const Session* session = nullptr;
-  RenderTotals render;                     ///< of the command render
-  const IndirectLight* indirect = nullptr; ///< null, or without applies: there was none
-  std::optional<PhotonLedger> photons;     ///< absent: none were sent
-  double photon_watts = 1.0;               ///< W of the ledger's unit
+  RenderTotals render;                      ///< of the command render
+  const IndirectLight* indirect = nullptr;  ///< null, or without applies: there was none
+  std::optional<PhotonLedger> photons;      ///< absent: none were sent
+  double photon_watts = 1.0;                ///< W of the ledger's unit
+  std::optional<DenoisedPictures> denoised; ///< absent: pictures were not
   VariantChoice variant;
   double seconds = 0.0;
 };

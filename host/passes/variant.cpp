@@ -58,6 +58,7 @@ std::string feature_options(const SceneFeatures& features) {
          (features.radiosity ? " -D HAS_RADIOSITY" : "") + (features.shadow_rays ? "" : " -D NO_SHADOW_RAYS") +
          (features.stored_direct ? " -D HAS_STORED_DIRECT" : "") +
          (features.cone_texels > 0 ? " -D HAS_CONES -D CONE_SIDES=" + std::to_string(features.cone_texels) : "") +
+         (features.auxiliary ? " -D HAS_AUXILIARY" : "") +
          (features.specular() ? material_options(features.materials, features.material_flags) : "") +
          (features.gather_k > 0 ? " -D HAS_CAUSTICS -D GATHER_MOST=" + std::to_string(gather_room(features.gather_k))
                                 : "");

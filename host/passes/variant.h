@@ -41,6 +41,7 @@ struct SceneFeatures {
   bool sky_map = false;        ///< light from all around is a map
   unsigned cone_texels = 0;    ///< of the picture: of a voxel, where pixels gather light between surfaces by cones
   bool stored_direct = false;  ///< of the picture: points hold what is known of their direct light
+  bool auxiliary = false;      ///< of the picture: its film has what guides a denoiser
 
   bool specular() const { return (material_flags & MATERIAL_SPECULAR) != 0; }
 };

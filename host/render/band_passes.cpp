@@ -18,10 +18,10 @@ Pace pace_for(const Session& session) {
 } // namespace
 
 BandPasses::BandPasses(Session& session, const DevicePools& pools, const RenderRequest& request)
-    : request_(request), tiles_(session, pools, request.lighting, request.frame.side, request.variant, request.paths,
-                                request.irradiance, request.shadow_rays, request.normal_field,
-                                request.has_caustics() ? request.photons : nullptr, request.backfaces, request.cones,
-                                request.stored_direct, request.point_ids.size),
+    : request_(request),
+      tiles_(session, pools, request.lighting, request.frame.side, request.variant, request.paths, request.irradiance,
+             request.shadow_rays, request.normal_field, request.has_caustics() ? request.photons : nullptr,
+             request.backfaces, request.cones, request.stored_direct, request.point_ids.size, request.auxiliary),
       pace_(pace_for(session)) {}
 
 void BandPasses::run(const BandOfSamples& band, const TileFilms& films, RenderTotals& totals,

@@ -41,8 +41,8 @@ struct RenderTotals {
 
 /// The EXR channels of a band, in the order of its values (interface.md): those whose stages exist. `indirect`: light
 /// from surface to surface is among them; `specular`: what is seen by way of specular surfaces is; `caustic`: what
-/// diffuse surfaces receive by way of them is.
-std::vector<ChannelName> film_channels(bool indirect, bool specular, bool caustic);
+/// diffuse surfaces receive by way of them is; `auxiliary`: what guides a denoiser is, behind all others.
+std::vector<ChannelName> film_channels(bool indirect, bool specular, bool caustic, bool auxiliary = false);
 
 struct RenderRequest {
   PixelWindow window;
@@ -61,6 +61,7 @@ struct RenderRequest {
   const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none
   View<std::uint32_t> first_ids{}; ///< rising: the first id of each object, of which the totals then tell; empty: none
   Backfaces backfaces = Backfaces::shade;
+  bool auxiliary = false; ///< the channels Denoise.Albedo, Denoise.N and Denoise.Emission, too
 
   bool has_indirect() const { return paths.has_value() || irradiance != nullptr; }
   bool has_specular() const { return normal_field != nullptr; }

@@ -1,4 +1,5 @@
 #include "host/render/resolve.h"
+#include "host/render/tile_renderer.h"
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -30,7 +31,8 @@ enum Channel {
   c_variance_g,
   c_variance_b,
   c_id,
-  c_first_optional ///< Diffuse, then Specular, then Caustic, three each, as many of them as there are
+  c_first_optional ///< Diffuse, Specular, Caustic, three each, as many of them as there are, then what guides a
+                   ///< denoiser
 };
 
 /// Variance of the mean of `samples` radiances: that of one, by their squared differences from the mean, over their
@@ -61,6 +63,12 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
     set(c_direct_r + k, direct);
     set(c_variance_r + k, variance_of_mean(scale * scale * double{film[FILM_SPREAD + k]}, samples));
   }
+  if (request.auxiliary) {
+    const std::size_t first = band.values.size() - AUXILIARY_CHANNELS; // behind all others, in the film's order
+    const float* sums = film + film_scalars(request.has_specular(), request.has_caustics(), false);
+    for (int k = 0; k < AUXILIARY_CHANNELS; ++k)
+      set(static_cast<int>(first) + k, (k < AUXILIARY_EMISSION ? 1.0 : scale) * (sums[k] / samples));
+  }
   const float hits = film[FILM_COVERAGE];
   set(c_a, hits / samples);
   std::uint32_t point;
@@ -86,7 +94,7 @@ void resolve_pixel(const float* film, const RenderRequest& request, float sample
 
 } // namespace
 
-std::vector<ChannelName> film_channels(bool indirect, bool specular, bool caustic) {
+std::vector<ChannelName> film_channels(bool indirect, bool specular, bool caustic, bool auxiliary) {
   std::vector<ChannelName> names;
   for (const char* name :
        {"R",   "G",   "B",   "A",   "Direct.R", "Direct.G", "Direct.B", "Albedo.R",   "Albedo.G",   "Albedo.B",
@@ -99,6 +107,9 @@ std::vector<ChannelName> film_channels(bool indirect, bool specular, bool causti
     if (specular) names.push_back({name, false});
   for (const char* name : {"Caustic.R", "Caustic.G", "Caustic.B"})
     if (caustic) names.push_back({name, false});
+  for (const char* name : {"Denoise.Albedo.R", "Denoise.Albedo.G", "Denoise.Albedo.B", "Denoise.N.X", "Denoise.N.Y",
+                           "Denoise.N.Z", "Denoise.Emission.R", "Denoise.Emission.G", "Denoise.Emission.B"})
+    if (auxiliary) names.push_back({name, false});
   return names;
 }
 
@@ -140,7 +151,7 @@ void resolve_tile(const float* film, std::size_t film_channels, int column, int 
 Band empty_band(const RenderRequest& request, int first_row, int rows) {
   const int width = request.window.x1 - request.window.x0;
   const std::size_t channels =
-      film_channels(request.has_indirect(), request.has_specular(), request.has_caustics()).size();
+      film_channels(request.has_indirect(), request.has_specular(), request.has_caustics(), request.auxiliary).size();
   return {request.window.y0 + first_row, rows, width,
           std::vector<std::vector<float>>(channels, std::vector<float>(static_cast<std::size_t>(width) * rows))};
 }

@@ -28,11 +28,11 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
                            const TraversalVariant& variant, const std::optional<LightPaths>& paths,
                            const Buffer<cl_float4>* irradiance, bool shadow_rays, const Buffer<cl_float4>* normal_field,
                            const DevicePhotonMap* photons, Backfaces backfaces, const DeviceCones* cones,
-                           const Buffer<cl_float4>* stored_direct, std::size_t pool_points)
+                           const Buffer<cl_float4>* stored_direct, std::size_t pool_points, bool auxiliary)
     : session_(session), octree_(pool_arguments(pools, nullptr, nullptr, nullptr, nullptr, nullptr)),
       params_(lighting.params), grouping_(variant.grouping), eye_group_(variant.group),
       shade_group_(paths ? WorkGroup{} : variant.group),
-      film_channels_(film_scalars(normal_field != nullptr, photons != nullptr)) {
+      film_channels_(film_scalars(normal_field != nullptr, photons != nullptr, auxiliary)) {
   params_.step_delta = static_cast<float>(variant.step_delta / side);
   // Without, what shines and has a size is still seen, and so is the sky.
   const bool asks_lights = paths || shadow_rays;
@@ -40,6 +40,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
                          !lighting.emitters.empty(), asks_lights && lighting.has_environment,
                          !paths && irradiance != nullptr, asks_lights};
   features.sky_map = lighting.sky != nullptr;
+  features.auxiliary = auxiliary;
   if (!paths && cones != nullptr) features.cone_texels = cones->texels;
   if (normal_field != nullptr) {
     features.materials = lighting.material_types;

@@ -9,9 +9,11 @@
 
 namespace pointgi {
 
-/// Scalars a pixel of a film: with specular surfaces their followed channels besides, with photons those of caustics.
-inline std::size_t film_scalars(bool specular, bool photons) {
-  return photons ? FILM_CHANNELS_CAUSTIC : specular ? FILM_CHANNELS_SPECULAR : FILM_CHANNELS;
+/// Scalars a pixel of a film: with specular surfaces their followed channels besides, with photons those of caustics;
+/// behind them, where asked for, what guides a denoiser.
+inline std::size_t film_scalars(bool specular, bool photons, bool auxiliary) {
+  const std::size_t light = photons ? FILM_CHANNELS_CAUSTIC : specular ? FILM_CHANNELS_SPECULAR : FILM_CHANNELS;
+  return light + (auxiliary ? AUXILIARY_CHANNELS : 0);
 }
 
 /// Device seconds of a tile's two kernels.
@@ -28,13 +30,13 @@ public:
   /// `irradiance`, of each point, is reflected too where it is there, and what pixels gather by `cones`, and instead of
   /// shadow rays' light without `shadow_rays`. Without a `normal_field` no surface is specular: all but diffuse ones
   /// look black. `stored_direct`: what the points of the pool, `pool_points`, know of their direct light; shadow rays
-  /// find the rest. Builds the programs where they are not built yet.
+  /// find the rest. `auxiliary`: the film has what guides a denoiser. Builds the programs where they are not built yet.
   TileRenderer(Session& session, const DevicePools& pools, const DeviceLighting& lighting, double side,
                const TraversalVariant& variant, const std::optional<LightPaths>& paths = {},
                const Buffer<cl_float4>* irradiance = nullptr, bool shadow_rays = true,
                const Buffer<cl_float4>* normal_field = nullptr, const DevicePhotonMap* photons = nullptr,
                Backfaces backfaces = Backfaces::shade, const DeviceCones* cones = nullptr,
-               const Buffer<cl_float4>* stored_direct = nullptr, std::size_t pool_points = 0);
+               const Buffer<cl_float4>* stored_direct = nullptr, std::size_t pool_points = 0, bool auxiliary = false);
 
   pg_uint samples() const { return params_.samples; }
 

@@ -87,7 +87,8 @@ double ProfileBench::trace(ProfiledKernel kernel, const TraversalVariant& varian
 }
 
 double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers) {
-  TileRenderer tiles(session_, pools.device, pools.tree->lighting, request_.frame.side, variant);
+  TileRenderer tiles(session_, pools.device, pools.tree->lighting, request_.frame.side, variant, {}, nullptr, true,
+                     nullptr, nullptr, Backfaces::shade, nullptr, nullptr, pools.tree->source.size());
   const PixelWindow& w = render_window_;
   const double seconds = tiles.launch(w.x0, w.y0, w.x1 - w.x0, w.y1 - w.y0, 0).all();
   if (answers == nullptr) return seconds;

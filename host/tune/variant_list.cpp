@@ -218,7 +218,8 @@ std::vector<ProgramUse> all_programs() {
     uses[at->second].cpu |= cpu;
     uses[at->second].gpu |= gpu;
   };
-  const SceneFeatures everything{all_lights, true, true, true, true, all_materials, all_material_flags};
+  SceneFeatures everything{all_lights, true, true, true, true, all_materials, all_material_flags}, nothing;
+  everything.stored_direct = nothing.stored_direct = true;
   const SceneFeatures traced{all_lights,        true, true, false, true, all_materials,
                              all_material_flags}; // by paths, photons
   for (const TraversalVariant& v : variants) {
@@ -230,7 +231,7 @@ std::vector<ProgramUse> all_programs() {
       add(eye_rays_program(v, backfaces), cpu, gpu);
     }
     if (usual_walk || usual_group) add(shade_program(v, everything), cpu, gpu);
-    if (usual_group) add(shade_program(v, {}), cpu, gpu);
+    if (usual_group) add(shade_program(v, nothing), cpu, gpu);
     add(direct_irradiance_program(v, {all_lights, true, true}), cpu, gpu);
     for (const bool emitters : {false, true}) {
       SceneFeatures with_map{all_lights, emitters, true};
@@ -250,16 +251,22 @@ std::vector<ProgramUse> all_programs() {
     add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);
     if (!usual_walk || !usual_group) continue;
-    for (const SceneFeatures& features : gpu_picture_features())
-      add(shade_program(v, features), cpu, gpu);
+    for (SceneFeatures features : gpu_picture_features())
+      for (const bool auxiliary : {false, true}) {
+        features.stored_direct = features.shadow_rays;
+        features.auxiliary = auxiliary;
+        add(shade_program(v, features), cpu, gpu);
+      }
     for (const bool some_paths : {false, true})
       for (const bool specular : {false, true})
-        for (const bool sky_map : {false, true}) {
-          SceneFeatures features = traced;
-          if (!specular) features.materials = features.material_flags = 0;
-          features.sky_map = sky_map;
-          add(path_program(v, features, some_paths), cpu, gpu);
-        }
+        for (const bool sky_map : {false, true})
+          for (const bool auxiliary : {false, true}) {
+            SceneFeatures features = traced;
+            if (!specular) features.materials = features.material_flags = 0;
+            features.sky_map = sky_map;
+            features.auxiliary = auxiliary;
+            add(path_program(v, features, some_paths), cpu, gpu);
+          }
     for (const PhotonStart start : {PhotonStart::aimed, PhotonStart::equal_power, PhotonStart::from_surfaces})
       for (const bool from_lights : {false, true}) { // or from emitting splats and the environment alone
         SceneFeatures features = traced;

@@ -2,6 +2,7 @@
  * L = emission + rho/pi (H_direct + H_indirect) on front sides; a back face reads 0; a miss reads the environment.
  *   NO_SHADOW_RAYS  H_direct is in the points' irradiance already */
 #include "lights/lights.cl"
+#include "render/auxiliary.cl"
 #include "render/camera.cl"
 #include "render/cones.cl"
 
@@ -143,7 +144,12 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   float3 diffuse = (float3)(0.0f);
 #endif
   sums[FILM_RAYS] += 1.0f;
-  if (blended_surface(POOL_ARGS, ray, free_ends(), hit, &s, &sums[FILM_RAYS])) {
+  const bool met = blended_surface(POOL_ARGS, ray, free_ends(), hit, &s, &sums[FILM_RAYS]);
+#ifdef HAS_AUXILIARY
+  add_auxiliary(true, lights, met, &s, (float3)(1.0f), sums);
+  add_emission(seen_light(lights, met, &s, ray.direction, only_choice()), sums);
+#endif
+  if (met) {
     point = s.splat;
     add_surface(lights.params, ray, t_start, &s, sums);
     if (s.front) {

@@ -18,6 +18,14 @@
 #define FILM_STRIDE FILM_CHANNELS
 #endif
 
+#ifdef HAS_AUXILIARY /* behind all of these, in the sums and in the film */
+enum AuxiliaryPlaces { SUM_AUXILIARY = SAMPLE_SUMS, FILM_AUXILIARY = FILM_STRIDE };
+#undef SAMPLE_SUMS
+#undef FILM_STRIDE
+#define SAMPLE_SUMS (SUM_AUXILIARY + AUXILIARY_CHANNELS)
+#define FILM_STRIDE (FILM_AUXILIARY + AUXILIARY_CHANNELS)
+#endif
+
 /* What the work-items of one pixel leave for each other. */
 typedef struct PixelSamples {
   float sums[SAMPLE_SUMS][GRID_RAYS];
@@ -132,4 +140,11 @@ static inline void add_to_film(const __local PixelSamples* samples, uint lane, u
     if (before == 0u || as_uint(pixel[FILM_POINT]) == FILM_NO_POINT)
       pixel[FILM_POINT] = as_float(first);
   }
+#ifdef HAS_AUXILIARY
+  if (lane > FILM_DIFFUSE && lane <= FILM_DIFFUSE + AUXILIARY_CHANNELS) {
+    const uint channel = lane - (FILM_DIFFUSE + 1);
+    const float sum = sum_of(samples->sums[SUM_AUXILIARY + channel]);
+    pixel[FILM_AUXILIARY + channel] = before == 0u ? sum : pixel[FILM_AUXILIARY + channel] + sum;
+  }
+#endif
 }

@@ -80,6 +80,10 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
       }
       if (path_counts(lights.params, state))
         radiance = seen_light(lights, met, &s, ray.direction, only_choice());
+#ifdef HAS_AUXILIARY
+      add_auxiliary(true, lights, met, &s, throughput, sums);
+      add_emission(radiance, sums);
+#endif
     }
     state = path_after(lights.params, state, false);
     const bool shines = met && s.front && surfaces <= lights.params->most_bounces;

@@ -40,6 +40,9 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
   uint state = 0u;                      /* of the automaton of path classes, after the surfaces so far */
   bool by_chance = true, mirrored = false; /* no sampled light stands for all that the ray meets; the first surface is specular */
   RayChoice choice = only_choice();
+#ifdef HAS_AUXILIARY
+  bool follows = true;
+#endif
   for (uint surfaces = 1u;; ++surfaces) {
     Surface s;
     float3 found = (float3)(0.0f), highlight = (float3)(0.0f);
@@ -56,6 +59,10 @@ static inline uint add_path(POOL_PARAMS, Lights lights, SampleId id, Ray ray, fl
     }
     if (by_chance && path_counts(lights.params, state))
       found = seen_light(lights, met, &s, ray.direction, choice);
+#ifdef HAS_AUXILIARY
+    follows = add_auxiliary(follows, lights, met, &s, throughput, sums);
+    add_emission(surfaces == 1u ? throughput * found : (float3)(0.0f), sums);
+#endif
     const __global Material* material = lights.materials + (met ? s.material : 0u);
     const float probability = met ? specular_probability(&s, material) : 0.0f;
 #ifdef HAS_LIGHT

@@ -105,6 +105,9 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   Media media = in_air();
   RayChoice choice = only_choice();
   const uint most = min(lights.params->most_bounces, MOST_EYE_BOUNCES);
+#ifdef HAS_AUXILIARY
+  bool follows = true;
+#endif
   for (uint bounces = 0u;; ++bounces) {
     Surface s;
     Scatter scatter;
@@ -137,7 +140,12 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
         }
       }
     }
-    direct += seen_light(lights, met, &s, ray.direction, choice);
+    const float3 seen = seen_light(lights, met, &s, ray.direction, choice);
+    direct += seen;
+#ifdef HAS_AUXILIARY
+    follows = add_auxiliary(follows, lights, met, &s, throughput, sums);
+    add_emission(bounces == 0u ? throughput * seen : (float3)(0.0f), sums);
+#endif
     add_seen(throughput * direct, throughput * diffuse, throughput * specular, throughput * caustic, bounces == 0u, sums);
     if (met && bounces < most && !reflects_by_cone(lights.materials + s.material))
       goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);

@@ -115,4 +115,10 @@ typedef struct Material {
 #define FILM_CHANNELS_CAUSTIC 29
 #define FILM_NO_POINT 0xffffffffu
 
+/* Only where a denoiser is to be guided, behind all others: sums over the samples (kernels/render/auxiliary.cl). */
+#define AUXILIARY_ALBEDO 0   /* 3: of the first diffuse or rough surface, followed through mirrors and glass */
+#define AUXILIARY_NORMAL 3   /* 3: its normal */
+#define AUXILIARY_EMISSION 6 /* 3: the part of FILM_DIRECT that no surface has reflected: LE */
+#define AUXILIARY_CHANNELS 9
+
 #endif

@@ -9,7 +9,7 @@ add_library(pointgi_library $<TARGET_OBJECTS:pointgi_octree> $<TARGET_OBJECTS:po
 # FLANN is headers to us, which call LZ4; its own package names HDF5 and MPI besides.
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 target_link_libraries(pointgi_library PRIVATE OpenCL::OpenCL OpenEXR::OpenEXR PNG::PNG ZLIB::ZLIB fmt::fmt
-                      tomlplusplus::tomlplusplus assimp::assimp PkgConfig::LZ4 OpenMP::OpenMP_CXX Threads::Threads)
+                      tomlplusplus::tomlplusplus assimp::assimp PkgConfig::LZ4 OpenMP::OpenMP_CXX Threads::Threads ${CMAKE_DL_LIBS})
 set_target_properties(pointgi_library PROPERTIES OUTPUT_NAME pointgi EXPORT_NAME pointgi LINKER_LANGUAGE CXX
                       VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 target_compile_features(pointgi_library INTERFACE cxx_std_17)

@@ -4,6 +4,7 @@
 /// with small stand-ins for the clouds and scenes that it reads. A ```toml block is a complete scene, a ```toml
 /// fragment block is loaded behind a few lines that name what it refers to. Other blocks are text.
 #include "host/scene/load_scene.h"
+#include "tests/support/fake_oidn.h"
 #include "tests/support/markdown.h"
 #include "tests/support/run_program.h"
 #include <algorithm>
@@ -187,6 +188,7 @@ std::string joined(const std::vector<std::string>& lines, const char* between) {
 } // namespace
 
 TEST_CASE("every command of the documentation ends well") {
+  const FakeOidn fake; // --denoise is run with it
   std::size_t run_count = 0;
   for (const MarkdownFile& page : pages()) {
     const TemporaryFolder folder;

@@ -110,6 +110,11 @@ TEST_CASE("pictures whose pixels trace no cones know nothing of voxels") {
   features.cone_texels = 6;
   CHECK_THAT(shade_program(v, features).options, Contains("HAS_CONES") && Contains("CONE_SIDES=6"));
   CHECK(cones_program("radiosity/cones/voxelise.cl").options.empty());
+  for (const bool auxiliary : {false, true}) { // only where a denoiser is guided
+    features.auxiliary = auxiliary;
+    for (const Program& program : {shade_program(v, features), path_program(v, features, false)})
+      CHECK((program.options.find("HAS_AUXILIARY") != std::string::npos) == auxiliary);
+  }
   CHECK_THAT(cones_program("radiosity/cones/trace.cl", 1).options, Contains("CONE_SIDES=1"));
 }
 
