@@ -18,7 +18,7 @@ static inline Surface surface_of_point(POOL_PARAMS, uint point) {
   return s;
 }
 
-__kernel void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, __global float* irradiance, uint first, uint end,
+__kernel OWN_VECTORS void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, __global float* irradiance, uint first, uint end,
                                           uint samples) {
   const uint point = first + get_global_id(0);
   if (point >= end)
