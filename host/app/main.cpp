@@ -1,4 +1,5 @@
 #include "host/app/commands.h"
+#include "host/cl/quirks.h"
 #include "host/scene/nearest.h"
 #include "host/scene/presets.h"
 #include <CLI/CLI.hpp>
@@ -44,7 +45,7 @@ struct Common {
 void limit_threads(int threads) {
   if (threads <= 0) return;
   omp_set_num_threads(threads);
-  setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+  limit_driver_threads(threads);
 }
 
 /// CLI11 answers an unknown command by asking for one.

@@ -1,5 +1,6 @@
 #include "host/cache/binary_cache.h"
 #include "host/cl/kernel_source.h"
+#include "host/cl/quirks.h"
 #include "host/cl/session.h"
 #include "host/error.h"
 #include <algorithm>
@@ -22,12 +23,6 @@ std::string build_log(const cl::Program& program, const cl::Device& device) {
   }
 }
 
-/// Whether the driver keeps what it compiled between runs. PoCL does, each kernel as it was launched; asked for a
-/// program's binary it compiles all its kernels once more, for work-groups of any size, which nothing then uses.
-bool driver_keeps_kernels(const DeviceInfo& info) {
-  return info.platform == "Portable Computing Language";
-}
-
 } // namespace
 
 const cl::Program& Session::program(const std::string& file, const std::string& options) {
@@ -47,14 +42,14 @@ std::vector<std::pair<std::string, std::string>> Session::programs_asked() const
 
 cl::Program Session::build(const std::string& file, const std::string& options) {
   const char* more = std::getenv("POINTGI_CL_OPTIONS"); // for people who debug kernels: -cl-opt-disable, -g
-  const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options) +
+  const std::string all_options = "-cl-std=CL1.2" + (options.empty() ? "" : " " + options) + quirk_options(info_) +
                                   (more != nullptr && *more != '\0' ? " " + std::string(more) : "");
   const std::string source = kernel_source(file);
   dump(file, all_options, source);
   const std::string key = source + "\n" + all_options + "\n" + info_.platform + "\n" + info_.name + "\n" +
                           info_.driver + "\n" + info_.opencl;
   const std::vector<cl::Device> devices{device_};
-  const bool by_driver = driver_keeps_kernels(info_);
+  const bool by_driver = has_quirk(info_, Quirk::keeps_kernels);
   if (const auto binary = by_driver ? std::nullopt : load_binary(key)) {
     try {
       cl::Program program(context_, devices, cl::Program::Binaries{*binary});

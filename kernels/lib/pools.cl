@@ -5,7 +5,9 @@
  *   POOL_IMAGE1D image1d_buffer_t, RGBA 32-bit texels
  *   POOL_IMAGE2D image2d_t of 2^POOL_WIDTH_LOG2 texels a row, RGBA 32-bit texels
  * Kernels take POOL_PARAMS and hand on POOL_ARGS. In images the Begin-End pool lies four entries to a texel, because
- * OpenCL 1.2 promises no one-channel format. */
+ * OpenCL 1.2 promises no one-channel format.
+ *   INLINE_FUNCTIONS  defined for drivers that mix up two images of a function's parameters (host/cl/quirks.h): every function
+ *                 that may have such parameters is inlined before the driver sees that they are two */
 #ifndef POOL_STORAGE
 #define POOL_STORAGE POOL_BUFFER
 #endif
@@ -39,6 +41,9 @@
 #define pool_begin_end(i) (begin_end_pool[i])
 #define pool_point_texel(i) (point_pool[i])
 #else
+#ifdef INLINE_FUNCTIONS
+#define inline inline __attribute__((always_inline))
+#endif
 __constant sampler_t pool_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_NONE | CLK_FILTER_NEAREST;
 static inline uint pool_component(uint4 texel, uint i) {
   const uint low = (i & 1u) ? texel.y : texel.x, high = (i & 1u) ? texel.w : texel.z;

@@ -14,7 +14,7 @@
  * its unit normal. Splats with an area for power are the photons of the second map: power over area, weighted alike, has no
  * need of a surface that is flat, nor of one that goes on, as far as the photons lie. Where they lie farther out than
  * `farthest` radii, too many splats would have to be added up: there the picture gathers over a disc. */
-__kernel void caustics_of_points(const __global PhotonNode* nodes, const __global float* buckets,
+__kernel OWN_VECTORS void caustics_of_points(const __global PhotonNode* nodes, const __global float* buckets,
                                  __constant GatherParams* params, const __global PhotonNode* area_nodes,
                                  const __global float* area_buckets, __constant GatherParams* area_params,
                                  const __global float4* points, __global float4* caustics, float farthest, uint first,

@@ -5,7 +5,7 @@
 
 /* irradiance[i].xyz [W/m2, scaled as RenderParams] of the place points[2 i].xyz, of the side that points[2 i + 1].xyz, unit,
  * is the normal of. */
-__kernel void caustic_irradiance(const __global PhotonNode* nodes, const __global float* buckets,
+__kernel OWN_VECTORS void caustic_irradiance(const __global PhotonNode* nodes, const __global float* buckets,
                                  __constant GatherParams* params, const __global float4* points,
                                  __global float4* irradiance, uint count) {
   const uint i = get_global_id(0);

@@ -62,7 +62,7 @@ static inline uint meet_surface(const Surface* s, const __global Material* mater
   return is_dark(*power) ? PHOTON_ABSORBED : PHOTON_ENDS;
 }
 
-__kernel void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global EmissionBatch* batches,
+__kernel OWN_VECTORS void trace_photons(POOL_PARAMS, LIGHT_PARAMS, const __global float4* radiance, const __global EmissionBatch* batches,
                             const __global PhotonLeaf* leaves, const __global uint* leaf_splats,
                             const __global uint* leaf_of, __global PhotonFlight* flights, uint batch_count, uint first,
                             uint count) {

@@ -19,7 +19,7 @@ static inline Surface surface_of_point(POOL_PARAMS, uint point) {
   return s;
 }
 
-__kernel void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, const __global uint* places, __global float* irradiance,
+__kernel OWN_VECTORS void direct_irradiance_of_points(POOL_PARAMS, LIGHT_PARAMS, const __global uint* places, __global float* irradiance,
                                           uint first, uint end, uint samples) {
   const uint i = first + get_global_id(0);
   if (i >= end)

@@ -55,7 +55,7 @@ static inline uint2 pixel_of_square(uint2 square, uint k, uint columns, uint row
                  min(PACKET_ROWS * square.y + k / PACKET_COLUMNS, rows - 1u));
 }
 
-__kernel void trace_eye_rays(POOL_PARAMS, __constant RenderParams* params, __global EyeHits* hits, uint first_x,
+__kernel OWN_VECTORS void trace_eye_rays(POOL_PARAMS, __constant RenderParams* params, __global EyeHits* hits, uint first_x,
                              uint first_y, uint columns, uint rows, uint first_sample) {
   const uint2 square = (uint2)(get_global_id(0), get_global_id(1));
   if (PACKET_COLUMNS * square.x >= columns || PACKET_ROWS * square.y >= rows)
@@ -95,7 +95,7 @@ __kernel void trace_eye_rays(POOL_PARAMS, __constant RenderParams* params, __glo
 }
 #else
 
-__kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
+__kernel OWN_VECTORS __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
 void trace_eye_rays(POOL_PARAMS, __constant RenderParams* params, __global EyeHits* hits, uint first_x, uint first_y,
                     uint columns, uint rows, uint first_sample) {
   const GroupItem item = group_item();

@@ -11,7 +11,7 @@
 #include "render/film.cl"
 #include "render/group.cl"
 
-__kernel __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
+__kernel OWN_VECTORS __attribute__((reqd_work_group_size(GROUP_X, GROUP_Y, 1)))
 void PIXEL_KERNEL(POOL_PARAMS, LIGHT_PARAMS,
                   const __global EyeHits* hits, __global float* film, uint first_x, uint first_y, uint columns, uint rows,
                   uint first_sample) {

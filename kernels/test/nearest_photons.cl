@@ -9,7 +9,7 @@
 
 /* Of places[i].xyz the k = params->k nearest photons: distance2[k * i ...] and photon[k * i ...], the photon's number in the
  * order of the buckets, in no order; found[i] of them are written. k is at most GATHER_MOST. */
-__kernel void nearest_of_places(const __global PhotonNode* nodes, const __global float* buckets,
+__kernel OWN_VECTORS void nearest_of_places(const __global PhotonNode* nodes, const __global float* buckets,
                                 __constant GatherParams* params, const __global float4* places,
                                 __global float* distance2, __global uint* photon, __global uint* found, uint count) {
   const PhotonPool pool = {nodes, buckets};

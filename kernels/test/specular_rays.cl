@@ -8,7 +8,7 @@
 #define LET_THROUGH 0x1.fffffep-1f
 #define MOST_SURFACES 64u
 
-__kernel void trace_specular_rays(POOL_PARAMS, const __global Material* materials, const __global RayQuery* rays,
+__kernel OWN_VECTORS void trace_specular_rays(POOL_PARAMS, const __global Material* materials, const __global RayQuery* rays,
                                   __global float4* ends_of, uint count, float step_delta) {
   const uint i = get_global_id(0);
   if (i >= count)

@@ -15,7 +15,7 @@ static inline Ray ray_of_query(const __global RayQuery* q, float step_delta) {
 }
 
 /* answers[i] = nearest hit of rays[i]. */
-__kernel void trace_closest_rays(POOL_PARAMS, const __global RayQuery* rays, __global RayAnswer* answers, uint count,
+__kernel OWN_VECTORS void trace_closest_rays(POOL_PARAMS, const __global RayQuery* rays, __global RayAnswer* answers, uint count,
                                  float step_delta) {
   const uint i = get_global_id(0);
   if (i >= count)
@@ -26,7 +26,7 @@ __kernel void trace_closest_rays(POOL_PARAMS, const __global RayQuery* rays, __g
 }
 
 /* answers[i] = nearest hit of rays[i] that does not belong to the surface which it leaves: surfaces[i] = (normal, radius). */
-__kernel void trace_closest_from_rays(POOL_PARAMS, const __global RayQuery* rays, const __global float4* surfaces,
+__kernel OWN_VECTORS void trace_closest_from_rays(POOL_PARAMS, const __global RayQuery* rays, const __global float4* surfaces,
                                       __global RayAnswer* answers, uint count, float step_delta) {
   const uint i = get_global_id(0);
   if (i >= count)
@@ -38,7 +38,7 @@ __kernel void trace_closest_from_rays(POOL_PARAMS, const __global RayQuery* rays
 }
 
 /* blocked[i] = 1 when any disc is hit in (t_min, t_max) of rays[i], else 0. Both ends are free: nothing is excluded. */
-__kernel void trace_any_rays(POOL_PARAMS, const __global RayQuery* rays, __global uint* blocked, uint count,
+__kernel OWN_VECTORS void trace_any_rays(POOL_PARAMS, const __global RayQuery* rays, __global uint* blocked, uint count,
                              float step_delta) {
   const uint i = get_global_id(0);
   if (i >= count)
@@ -47,7 +47,7 @@ __kernel void trace_any_rays(POOL_PARAMS, const __global RayQuery* rays, __globa
 }
 
 /* surfaces[i] = (normal, t) of the blended surface of rays[i], then (albedo, 1); the second w is 0 where nothing is hit. */
-__kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __global float4* surfaces, uint count,
+__kernel OWN_VECTORS void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __global float4* surfaces, uint count,
                                  float step_delta) {
   const uint i = get_global_id(0);
   if (i >= count)
@@ -63,7 +63,7 @@ __kernel void trace_blended_rays(POOL_PARAMS, const __global RayQuery* rays, __g
 #include "traverse/wide_packet.cl"
 
 /* answers[i] = nearest hits of packets[i]. NDRange: 1-D, one work-item a packet, padded. */
-__kernel void trace_packets(POOL_PARAMS, const __global RayPacketQuery* packets, __global RayPacketAnswer* answers,
+__kernel OWN_VECTORS void trace_packets(POOL_PARAMS, const __global RayPacketQuery* packets, __global RayPacketAnswer* answers,
                             uint count) {
   const uint i = get_global_id(0);
   if (i >= count)

@@ -6,7 +6,7 @@
  * NDRange: 2-D, padded: at.columns x at.rows tiles of the band; those above the diagonal do nothing.
  *   tiles  of the band
  *   rays   grows by the number of rays traced */
-__kernel void pairs_visible(SIGHT_PARAMS, const __global OctreePoint* points, PairRows at, __global ulong* tiles,
+__kernel OWN_VECTORS void pairs_visible(SIGHT_PARAMS, const __global OctreePoint* points, PairRows at, __global ulong* tiles,
                             __global uint* rays) {
   const uint column = at.first_column + get_global_id(0), row = at.first_row + get_global_id(1);
   if (get_global_id(0) >= at.columns || get_global_id(1) >= at.rows || column > row)

@@ -19,7 +19,7 @@
  *   senders  where they are seen: places, normals, radii and areas
  *   seen     rows from at.held_from on
  *   rays     grows by the number of rays traced */
-__kernel void senders_visible(SIGHT_PARAMS, const __global OctreePoint* points, SENDER_PARAMS, SenderRows at,
+__kernel OWN_VECTORS void senders_visible(SIGHT_PARAMS, const __global OctreePoint* points, SENDER_PARAMS, SenderRows at,
                               __global uchar* seen, __global uint* rays) {
   const uint first = SENDERS_AT_ONCE * get_global_id(0), row = at.first_row + get_global_id(1);
   if (first >= at.senders || get_global_id(1) >= at.rows)

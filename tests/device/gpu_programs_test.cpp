@@ -4,6 +4,7 @@
 #include "host/stages/prepared_scene.h"
 #include "host/tune/variant_list.h"
 #include "tests/support/cache_folder.h"
+#include "tests/support/source_folder.h"
 #include <catch2/catch.hpp>
 #include <set>
 #include <spdlog/spdlog.h>
@@ -60,7 +61,7 @@ TEST_CASE("every program that a GPU is asked for when the demo is rendered is ch
   Session session(faked_gpu());
   // Few points and photons: programs depend on what there is, not on how much.
   const Scene scene =
-      load_scene(POINTGI_SOURCE_DIR "/scenes/demo/room.toml",
+      load_scene(source_folder() + "/scenes/demo/room.toml",
                  {"render.size=[8,8]", "render.spp=1", "caustics.photons=20000", "radiosity.epsilon=0.1"});
   make_picture(session, scene, std::nullopt);
   Scene thesis = scene, bare = scene, cones = scene;

@@ -1,6 +1,7 @@
 /// Every device may fail: what its self-test says then.
 #include "host/tune/self_test.h"
 #include "tests/support/device.h"
+#include "tests/support/source_folder.h"
 #include "tests/support/temporary_folder.h"
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -18,8 +19,7 @@ class AlteredKernels {
 public:
   AlteredKernels(const std::string& file, const std::string& from, const std::string& to) {
     const std::string kernels = folder_.file("kernels");
-    std::filesystem::copy(std::string(POINTGI_SOURCE_DIR) + "/kernels", kernels,
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(source_folder() + "/kernels", kernels, std::filesystem::copy_options::recursive);
     std::ostringstream text;
     text << std::ifstream(kernels + "/" + file).rdbuf();
     std::string altered = text.str();

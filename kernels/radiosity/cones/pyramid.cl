@@ -26,7 +26,7 @@ static inline uint3 place_of(uint number, uint side_log2) {
  *   splats     the splat of each share
  *   areas      and its area in the voxel, in sides of it squared
  *   radiosity  B of each splat [W/m2]; w unused */
-__kernel void inject_light(const __global uint* occupied, uint first, uint end, __constant ConeGrid* grid,
+__kernel OWN_VECTORS void inject_light(const __global uint* occupied, uint first, uint end, __constant ConeGrid* grid,
                            const __global uint* begin, const __global uint* splats, const __global float* areas,
                            const __global OctreePoint* points, const __global float4* radiosity, __global float4* voxels) {
   const uint id = first + get_global_id(0);
@@ -55,7 +55,7 @@ __kernel void inject_light(const __global uint* occupied, uint first, uint end, 
 }
 
 /* A voxel of `level` >= 1 is the mean of the eight that divide it: the level below must be done. */
-__kernel void average_children(const __global uint* occupied, uint first, uint end, __constant ConeGrid* grid, uint level,
+__kernel OWN_VECTORS void average_children(const __global uint* occupied, uint first, uint end, __constant ConeGrid* grid, uint level,
                                __global float4* voxels) {
   const uint id = first + get_global_id(0);
   if (id >= end)

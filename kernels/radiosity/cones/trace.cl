@@ -5,7 +5,7 @@
 
 /* irradiance[3 i ...] [W/m2] of the point places[i] of the table.
  * NDRange: 1-D, a work-item a receiver, padded: `first` and following, below `end`. */
-__kernel void trace_cones(const __global OctreePoint* points, const __global uint* places, uint first, uint end,
+__kernel OWN_VECTORS void trace_cones(const __global OctreePoint* points, const __global uint* places, uint first, uint end,
                           __constant ConeGrid* grid, __constant Cone* cones, const __global float4* voxels,
                           const __global uchar* cells, __global float* irradiance) {
   const uint id = first + get_global_id(0);

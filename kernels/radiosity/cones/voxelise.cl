@@ -108,7 +108,7 @@ static inline uint shares_of_splat(const __global OctreePoint* point, __constant
 }
 
 /* NDRange of both: 1-D, a work-item a splat, padded: `first` and following, below `end`. */
-__kernel void count_shares(const __global OctreePoint* points, uint first, uint end, __constant ConeGrid* grid,
+__kernel OWN_VECTORS void count_shares(const __global OctreePoint* points, uint first, uint end, __constant ConeGrid* grid,
                            __global uint* counts) {
   const uint i = first + get_global_id(0);
   if (i < end)
@@ -117,7 +117,7 @@ __kernel void count_shares(const __global OctreePoint* points, uint first, uint 
 
 /* shares[begin[i] - begin[first]] and following, up to those of i + 1: of splat i. Two programs may round a sliver apart:
  * what count_shares saw and this does not is a share of nothing. */
-__kernel void write_shares(const __global OctreePoint* points, uint first, uint end, __constant ConeGrid* grid,
+__kernel OWN_VECTORS void write_shares(const __global OctreePoint* points, uint first, uint end, __constant ConeGrid* grid,
                            const __global uint* begin, __global VoxelShare* shares) {
   const uint i = first + get_global_id(0);
   if (i >= end)

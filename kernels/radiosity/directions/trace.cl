@@ -71,7 +71,7 @@ static inline uint splat_seen(POOL_PARAMS, Ray ray, OcclusionEnds ends, Hit hit,
  *   directions  `count` cells (direction_in_cell)
  *   ways        [i] becomes the harmonic mean of the lengths of its rays, INFINITY where none meets anything
  *   rays        [0] grows by the number of rays traced, [1] by those of them that beams trace */
-__kernel void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,
+__kernel OWN_VECTORS void trace_directions(POOL_PARAMS, const __global uint* places, uint first, uint end,
                                const __global float4* directions, uint count, uint seed, __global uint* hits,
                                uint held_from, __global float* ways, __global uint* rays, float step_delta) {
 #ifdef RAY_PACKETS
