@@ -11,7 +11,7 @@ class PreparedDirections : public PreparedRadiosity {
 public:
   PreparedDirections(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                      const WorkReport& report)
-      : places_(exchanging_points(scene)), points_(points_at(scene, places_)) {
+      : pool_(scene.points), places_(exchanging_points(scene)) {
     if (places_.empty()) return;
     DirectionsOptions options;
     options.directions = static_cast<unsigned>(settings.directions);
@@ -25,7 +25,7 @@ public:
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
-    return solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
+    return solve_by_operator(exchange_.get(), {pool_, places_}, light, tolerance, report);
   }
   std::uint64_t rays() const override { return exchange_ ? exchange_->rays() : 0; }
   std::string summary() const override {
@@ -39,8 +39,8 @@ public:
   }
 
 private:
+  View<Splat> pool_;
   std::vector<std::uint32_t> places_;
-  std::vector<Splat> points_;
   std::unique_ptr<DeviceDirections> exchange_; ///< absent: nothing exchanges light
 };
 
