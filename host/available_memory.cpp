@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <sys/resource.h>
 
 namespace pointgi {
 
@@ -51,6 +52,11 @@ std::optional<std::uint64_t> available_memory() {
   const auto machine = left_of_machine(), group = left_of_group();
   if (!machine || !group) return machine ? machine : group;
   return std::min(*machine, *group);
+}
+
+std::uint64_t process_peak_bytes() {
+  rusage usage{};
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<std::uint64_t>(usage.ru_maxrss) * 1024u : 0;
 }
 
 } // namespace pointgi

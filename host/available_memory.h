@@ -1,5 +1,5 @@
 #pragma once
-/// What the machine's memory has left.
+/// What the machine's memory has left, and what this process has of it.
 #include <cstdint>
 #include <optional>
 
@@ -8,5 +8,8 @@ namespace pointgi {
 /// Bytes that the program can still take without swapping: MemAvailable of Linux, or less where a control group allows
 /// less; absent: not known.
 std::optional<std::uint64_t> available_memory();
+
+/// Most that this process has held in memory until now, bytes; 0 where the system does not tell.
+std::uint64_t process_peak_bytes();
 
 } // namespace pointgi

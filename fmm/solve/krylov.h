@@ -1,7 +1,6 @@
 #pragma once
 /// Eigen's BiCGSTAB over a radiosity operator.
 #include "fmm/solve/radiosity_operator.h"
-#include <Eigen/Core>
 
 namespace pointgi {
 
@@ -13,7 +12,7 @@ struct KrylovResult {
 
 /// Improves x, a solution of (I - rho H) x = emission about the kept linearisation point. Stops at |residual| <=
 /// tolerance |emission| or after most_steps of two applies each. `x` is left as it was unless the result is useful.
-KrylovResult solve_krylov(RadiosityOperator& exchange, const Eigen::VectorXd& emission, const Eigen::VectorXd& albedo,
-                          double tolerance, unsigned most_steps, Eigen::VectorXd& x);
+KrylovResult solve_krylov(RadiosityOperator& exchange, View<float> emission, View<float> albedo, double tolerance,
+                          unsigned most_steps, std::vector<double>& x);
 
 } // namespace pointgi

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace pointgi {
 
@@ -13,32 +14,36 @@ constexpr unsigned most_krylov_steps = 100;
 
 struct Problem {
   RadiosityOperator& exchange;
-  Eigen::VectorXd emission, albedo;
-  View<double> area;
+  View<float> emission, albedo, area;
+  std::vector<double> irradiance = {}; ///< of the last sweep
 
-  /// Sum of area |x| over the points, per colour.
-  std::array<double, 3> power(const Eigen::VectorXd& x) const {
+  /// E + rho H, element k of [points x 3], of the irradiance of the last sweep.
+  double next(std::size_t k) const { return double{emission[k]} + double{albedo[k]} * irradiance[k]; }
+
+  /// Sum of area |x| over the points, per colour; x(k): element k of [points x 3].
+  template <class Value>
+  std::array<double, 3> power(const Value& x) const {
     std::array<double, 3> sum{};
     for (std::size_t i = 0; i < area.size; ++i)
-      for (int c = 0; c < 3; ++c)
-        sum[c] += area[i] * std::abs(x[static_cast<Eigen::Index>(3 * i + c)]);
+      for (std::size_t c = 0; c < 3; ++c)
+        sum[c] += double{area[i]} * std::abs(x(3 * i + c));
     return sum;
   }
 
   /// Mean over the area of |change| / after, of the worst colour: a dark room counts as much as the bright street
   /// before it. What is darker than `faintest` of the mean is not asked for.
-  double relative(const Eigen::VectorXd& change, const Eigen::VectorXd& after) const {
+  template <class Change, class After>
+  double relative(const Change& change, const After& after) const {
     constexpr double faintest = 1e-5;
     const std::array<double, 3> all = power(after);
     double whole = 0.0, worst = 0.0;
     for (std::size_t i = 0; i < area.size; ++i)
-      whole += area[i];
-    for (int c = 0; c < 3; ++c) {
+      whole += double{area[i]};
+    for (std::size_t c = 0; c < 3; ++c) {
       double sum = 0.0;
       for (std::size_t i = 0; i < area.size; ++i) {
-        const auto at = static_cast<Eigen::Index>(3 * i + c);
-        if (change[at] != 0.0)
-          sum += area[i] * std::abs(change[at]) / (std::abs(after[at]) + faintest * all[c] / whole);
+        const double by = change(3 * i + c);
+        if (by != 0.0) sum += double{area[i]} * std::abs(by) / (std::abs(after(3 * i + c)) + faintest * all[c] / whole);
       }
       if (whole > 0.0) worst = std::max(worst, sum / whole);
     }
@@ -46,7 +51,7 @@ struct Problem {
   }
 };
 
-void check(const RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
+void check(const RadiosityOperator& exchange, View<float> emission, View<float> albedo, View<float> area,
            const SolveOptions& options) {
   const std::size_t n = exchange.points();
   if (emission.size != 3 * n || albedo.size != 3 * n || area.size != n)
@@ -58,24 +63,24 @@ void check(const RadiosityOperator& exchange, View<double> emission, View<double
 }
 
 /// B = E + rho H(B); what changed gives the residual of the B before, and its fall the rate.
-void sweep(Problem& problem, const std::array<double, 3>& emitted, Eigen::VectorXd& b, Solution& solution) {
-  std::vector<double> h;
-  problem.exchange.apply({b.data(), static_cast<std::size_t>(b.size())}, LinearisationPoint::current, h);
-  const Eigen::Map<const Eigen::VectorXd> irradiance(h.data(), b.size());
-  const Eigen::VectorXd next = problem.emission + problem.albedo.cwiseProduct(irradiance);
-  const std::array<double, 3> change = problem.power(next - b);
+void sweep(Problem& problem, const std::array<double, 3>& emitted, std::vector<double>& b, Solution& solution) {
+  problem.exchange.apply(b, LinearisationPoint::current, problem.irradiance);
+  const auto next = [&](std::size_t k) { return problem.next(k); };
+  const auto by = [&](std::size_t k) { return problem.next(k) - b[k]; };
+  const std::array<double, 3> change = problem.power(by);
   double of_power = 0.0;
-  for (int c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < 3; ++c)
     if (emitted[c] > 0.0) of_power = std::max(of_power, change[c] / emitted[c]);
   // The rate is that of the power: while light goes from room to room the relative residual does not fall.
   if (!solution.history.empty() && solution.history.back() > 0.0) solution.rate = of_power / solution.history.back();
   solution.history.push_back(of_power);
-  const double residual = std::max(of_power, problem.relative(next - b, next));
+  const double residual = std::max(of_power, problem.relative(by, next));
   solution.settling = solution.residual > 0.0 ? residual / solution.residual : 0.0;
   solution.residual = residual;
   ++solution.sweeps;
   ++solution.applies;
-  b = next;
+  for (std::size_t k = 0; k < b.size(); ++k)
+    b[k] = next(k);
 }
 
 /// Jacobi sweeps that are left until the tolerance is reached, as the last one settled.
@@ -87,7 +92,7 @@ double sweeps_left(const Solution& solution, double tolerance) {
 
 /// Jacobi until converged, until the rate says that it keeps its light, or until `most` sweeps were made.
 bool jacobi(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options, unsigned most,
-            Eigen::VectorXd& b, Solution& solution) {
+            std::vector<double>& b, Solution& solution) {
   for (unsigned k = 0; k < most && solution.applies < options.most_applies; ++k) {
     sweep(problem, emitted, b, solution);
     if (!std::isfinite(solution.residual)) break;
@@ -100,13 +105,14 @@ bool jacobi(Problem& problem, const std::array<double, 3>& emitted, const SolveO
 }
 
 /// Krylov and a sweep in turn. False when that did not end it.
-bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options, Eigen::VectorXd& b,
-                Solution& solution) {
+bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const SolveOptions& options,
+                std::vector<double>& b, Solution& solution) {
   constexpr int most_turns = 6;        // another linearisation point changes little: two are the rule
   constexpr double least_inner = 1e-7; // below it are roundings of the device's floats
   double inner = 0.3 * options.tolerance;
   for (int turn = 0; turn < most_turns && solution.applies < options.most_applies; ++turn) {
     const double before = solution.residual;
+    std::vector<double>().swap(problem.irradiance); // Krylov has one of its own
     const KrylovResult result =
         solve_krylov(problem.exchange, problem.emission, problem.albedo, inner, most_krylov_steps, b);
     solution.krylov_steps += result.steps;
@@ -126,19 +132,16 @@ bool accelerate(Problem& problem, const std::array<double, 3>& emitted, const So
 
 } // namespace
 
-Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
+Solution solve_radiosity(RadiosityOperator& exchange, View<float> emission, View<float> albedo, View<float> area,
                          const SolveOptions& options) {
   check(exchange, emission, albedo, area, options);
-  const auto vector_of = [](View<double> v) {
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data, static_cast<Eigen::Index>(v.size)));
-  };
-  Problem problem{exchange, vector_of(emission), vector_of(albedo), area};
+  Problem problem{exchange, emission, albedo, area};
   Solution solution;
-  Eigen::VectorXd b = problem.emission;
-  const std::array<double, 3> emitted = problem.power(b);
-  const auto finish = [&] {
-    solution.radiosity.assign(b.data(), b.data() + b.size());
-    return solution;
+  std::vector<double> b(emission.begin(), emission.end());
+  const std::array<double, 3> emitted = problem.power([&](std::size_t k) { return b[k]; });
+  const auto finish = [&]() -> Solution&& {
+    solution.radiosity = std::move(b);
+    return std::move(solution);
   };
   if (!(emitted[0] + emitted[1] + emitted[2] > 0.0)) {
     solution.end = SolveEnd::converged; // dark
@@ -148,7 +151,7 @@ Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, Vie
   // Light that is kept leaves the residual where it began; far below that a rate of 1 is rounding.
   const auto keeps = [&] { return !(solution.rate < options.largest_rate) && !(solution.history.back() < 0.01); };
   if (!keeps() && options.krylov && sweeps_left(solution, options.tolerance) > options.patient_sweeps) {
-    const Eigen::VectorXd kept = b;
+    const std::vector<double> kept = b;
     if (accelerate(problem, emitted, options, b, solution)) return finish();
     if (!(solution.history.back() < solution.history[options.first_sweeps - 1])) {
       b = kept; // worse than before: from there on as if it had not been

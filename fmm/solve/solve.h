@@ -40,12 +40,14 @@ struct Solution {
   std::vector<double> history; ///< power of the residual over that of E after each Jacobi sweep
 };
 
-/// emission E [points x 3, W/m^2], albedo rho [points x 3, 0..1], area [points, any unit]; tree order, RGB. Jacobi's
+/// emission E [points x 3, W/m^2], albedo rho [points x 3, 0..1], area [points, any unit]; tree order, RGB. All sums
+/// and the iteration are in double; beside what is given and returned it keeps one irradiance, and Krylov's vectors
+/// where these are needed. Jacobi's
 /// method first; where its residual falls slowly, Eigen's BiCGSTAB over the operator about the kept linearisation
 /// point, and a sweep of Jacobi's after each, which moves the linearisation point and gives the residual. Ends in
 /// bounded time, whatever the scene. Deterministic. Throws std::invalid_argument on sizes that differ and on options
 /// out of range.
-Solution solve_radiosity(RadiosityOperator& exchange, View<double> emission, View<double> albedo, View<double> area,
+Solution solve_radiosity(RadiosityOperator& exchange, View<float> emission, View<float> albedo, View<float> area,
                          const SolveOptions& options);
 
 /// What to tell people; empty when it converged.

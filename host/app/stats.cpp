@@ -1,14 +1,8 @@
 #include "host/app/stats.h"
 #include "host/atomic_file.h"
-#include <sys/resource.h>
+#include "host/available_memory.h"
 
 namespace pointgi {
-
-std::uint64_t host_peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024u;
-}
 
 void write_text(const std::string& path, const std::string& text) {
   AtomicFile file(path);
@@ -113,6 +107,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
                              {"reason", s.reason},
                              {"seconds", s.seconds},
                              {"device_seconds", s.device_seconds},
+                             {"host_peak_bytes", s.host_peak_bytes},
                              {"items", s.items},
                              {"unit", s.unit}});
   out["kernels"] = json::object();
@@ -121,7 +116,7 @@ void write_stats(const std::string& path, const Stats& stats, const StageLog& st
   out["programs"] = {{"compiled", stats.session->programs_compiled()},
                      {"from_cache", stats.session->programs_from_cache()},
                      {"kept_by_driver", stats.session->programs_kept_by_driver()}};
-  out["memory"] = {{"host_peak_bytes", host_peak_bytes()}, {"device_peak_bytes", stats.session->peak_bytes()}};
+  out["memory"] = {{"host_peak_bytes", process_peak_bytes()}, {"device_peak_bytes", stats.session->peak_bytes()}};
   out["seconds"] = stats.seconds;
   write_text(path, out.dump(1) + "\n");
 }

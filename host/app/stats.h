@@ -35,7 +35,4 @@ nlohmann::json variant_json(const TraversalVariant& variant);
 /// Writes text atomically, for --trace. Throws Error(output).
 void write_text(const std::string& path, const std::string& text);
 
-/// Most memory that the process has held, bytes.
-std::uint64_t host_peak_bytes();
-
 } // namespace pointgi

@@ -113,21 +113,21 @@ cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
   }
 }
 
-void Session::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes) {
+void Session::write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t from) {
   if (bytes == 0) return;
   try {
     ask_faults({DeviceCall::Kind::upload, {}, bytes, 0});
-    queue_.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+    queue_.enqueueWriteBuffer(buffer, CL_TRUE, from, bytes, data);
   } catch (const cl::Error& error) {
     fail(error, "copying " + amount(bytes) + " to the device");
   }
 }
 
-void Session::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes) {
+void Session::read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t from) {
   if (bytes == 0) return;
   try {
     ask_faults({DeviceCall::Kind::download, {}, bytes, 0});
-    queue_.enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, data);
+    queue_.enqueueReadBuffer(buffer, CL_TRUE, from, bytes, data);
   } catch (const cl::Error& error) {
     fail(error, "copying " + amount(bytes) + " from the device");
   }

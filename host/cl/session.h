@@ -89,15 +89,16 @@ public:
   Buffer<T> upload(const std::vector<T, Allocator>& data) {
     return upload(data.data(), data.size());
   }
-  /// The first `size` elements, which the buffer has room for.
+  /// The elements [first, first + size), which the buffer has room for.
   template <typename T>
-  void write(const Buffer<T>& buffer, const T* data, std::size_t size) {
-    write_bytes(buffer.handle, data, size * sizeof(T));
+  void write(const Buffer<T>& buffer, const T* data, std::size_t size, std::size_t first = 0) {
+    write_bytes(buffer.handle, data, size * sizeof(T), first * sizeof(T));
   }
+  /// The elements [first, first + count).
   template <typename T>
-  std::vector<T> download(const Buffer<T>& buffer, std::size_t count) {
+  std::vector<T> download(const Buffer<T>& buffer, std::size_t count, std::size_t first = 0) {
     std::vector<T> data(count);
-    read_bytes(buffer.handle, data.data(), count * sizeof(T));
+    read_bytes(buffer.handle, data.data(), count * sizeof(T), first * sizeof(T));
     return data;
   }
 
@@ -164,8 +165,8 @@ private:
   };
 
   cl::Buffer allocate_bytes(std::size_t bytes, cl_mem_flags flags);
-  void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes);
-  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes);
+  void write_bytes(const cl::Buffer& buffer, const void* data, std::size_t bytes, std::size_t from = 0);
+  void read_bytes(const cl::Buffer& buffer, void* data, std::size_t bytes, std::size_t from = 0);
   void fill_bytes(const cl::Buffer& buffer, const void* value, std::size_t size, std::size_t count);
   void ask_faults(const DeviceCall& call) const;
   cl::Program build(const std::string& file, const std::string& options);

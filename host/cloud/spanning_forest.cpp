@@ -19,10 +19,19 @@ constexpr std::uint16_t no_edge = std::numeric_limits<std::uint16_t>::max();
 constexpr double pi = 3.14159265358979323846;
 
 /// The graph: slot [site * 8 + j] is the edge to the j-th neighbour; its key is 2 * bucket + (1 if the signs differ).
+/// Where an edge leads, the sites are asked again: those of a cloud keep their neighbours.
 struct Graph {
-  std::vector<std::uint32_t> to;
+  const Sites& sites;
   std::vector<std::uint16_t> key;
   std::vector<float> reach2; ///< squared distance of the last neighbour
+
+  std::uint32_t from(std::size_t slot) const { return static_cast<std::uint32_t>(slot / graph_neighbours); }
+  std::uint32_t to(std::size_t slot) const {
+    std::array<Neighbour, graph_neighbours> near;
+    const auto number = static_cast<unsigned>(slot % graph_neighbours);
+    sites.nearest(from(slot), number + 1, near.data());
+    return near[number].site;
+  }
 };
 
 std::uint16_t edge_key(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& e) {
@@ -36,8 +45,7 @@ std::uint16_t edge_key(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
 
 Graph neighbour_graph(const Sites& sites, const std::vector<Eigen::Vector3f>& normals) {
   const std::size_t n = sites.size();
-  Graph graph;
-  graph.to.resize(n * graph_neighbours);
+  Graph graph{sites, {}, {}};
   graph.key.assign(n * graph_neighbours, no_edge);
   graph.reach2.assign(n, 0.0f);
   parallel_ranges(n, 1024, [&](std::size_t begin, std::size_t end) {
@@ -45,39 +53,45 @@ Graph neighbour_graph(const Sites& sites, const std::vector<Eigen::Vector3f>& no
     for (std::size_t s = begin; s < end; ++s) {
       const auto site = static_cast<std::uint32_t>(s);
       const unsigned count = sites.nearest(site, graph_neighbours, near.data());
-      for (unsigned j = 0; j < count; ++j) {
-        const std::uint32_t other = near[j].site;
-        graph.to[s * graph_neighbours + j] = other;
-        graph.key[s * graph_neighbours + j] = edge_key(normals[s].cast<double>(), normals[other].cast<double>(),
-                                                       sites.position(other) - sites.position(site));
-      }
+      for (unsigned j = 0; j < count; ++j)
+        graph.key[s * graph_neighbours + j] = edge_key(normals[s].cast<double>(), normals[near[j].site].cast<double>(),
+                                                       sites.position(near[j].site) - sites.position(site));
       if (count > 0) graph.reach2[s] = near[count - 1].distance2;
     }
   });
   return graph;
 }
 
-/// Slots in the order of their weights, as numbers that count them all. Of an edge that both ends list, the end with
-/// the lower number keeps it.
+/// Of an edge that both ends list, the end with the lower number keeps it: the other's slot becomes empty.
+void drop_twins(Graph& graph) {
+  parallel_ranges(graph.reach2.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    std::array<Neighbour, graph_neighbours> near, of_other;
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto site = static_cast<std::uint32_t>(s);
+      const unsigned count = graph.sites.nearest(site, graph_neighbours, near.data());
+      for (unsigned j = 0; j < count; ++j) {
+        const std::uint32_t other = near[j].site;
+        if (site < other) continue;
+        const unsigned others = graph.sites.nearest(other, graph_neighbours, of_other.data());
+        const auto is_site = [&](const Neighbour& neighbour) { return neighbour.site == site; };
+        if (std::any_of(of_other.begin(), of_other.begin() + others, is_site))
+          graph.key[s * graph_neighbours + j] = no_edge;
+      }
+    }
+  });
+}
+
+/// Slots that are not empty in the order of their weights, as numbers that count them all.
 template <class Slot>
 std::vector<Slot> edges_by_weight(const Graph& graph) {
-  const auto has_twin = [&](std::size_t slot) {
-    const std::uint32_t from = static_cast<std::uint32_t>(slot / graph_neighbours), to = graph.to[slot];
-    if (from < to) return false;
-    const auto* list = graph.to.data() + std::size_t(to) * graph_neighbours;
-    return std::find(list, list + graph_neighbours, from) != list + graph_neighbours;
-  };
   std::vector<std::uint64_t> start(buckets + 1, 0);
-  std::vector<char> kept(graph.to.size());
-  for (std::size_t slot = 0; slot < graph.to.size(); ++slot) {
-    kept[slot] = graph.key[slot] != no_edge && !has_twin(slot);
-    if (kept[slot]) ++start[graph.key[slot] / 2 + 1];
-  }
+  for (const std::uint16_t key : graph.key)
+    if (key != no_edge) ++start[key / 2u + 1];
   for (std::uint32_t b = 0; b < buckets; ++b)
     start[b + 1] += start[b];
   std::vector<Slot> order(start[buckets]);
-  for (std::size_t slot = 0; slot < graph.to.size(); ++slot)
-    if (kept[slot]) order[start[graph.key[slot] / 2]++] = static_cast<Slot>(slot);
+  for (std::size_t slot = 0; slot < graph.key.size(); ++slot)
+    if (graph.key[slot] != no_edge) order[start[graph.key[slot] / 2u]++] = static_cast<Slot>(slot);
   return order;
 }
 
@@ -124,7 +138,7 @@ namespace {
 template <class Slot>
 void join_by_weight(const Graph& graph, SignedSets& sets) {
   for (const Slot slot : edges_by_weight<Slot>(graph))
-    sets.join(static_cast<std::uint32_t>(slot / graph_neighbours), graph.to[slot], graph.key[slot] & 1u);
+    sets.join(graph.from(slot), graph.to(slot), graph.key[slot] & 1u);
 }
 
 } // namespace
@@ -134,8 +148,9 @@ SpanningForest agree_normals(const Sites& sites, std::vector<Eigen::Vector3f>& n
   SignedSets sets(n);
   SpanningForest forest;
   {
-    const Graph graph = neighbour_graph(sites, normals);
-    if (graph.to.size() <= narrow_slots)
+    Graph graph = neighbour_graph(sites, normals);
+    drop_twins(graph);
+    if (graph.key.size() <= narrow_slots)
       join_by_weight<std::uint32_t>(graph, sets);
     else
       join_by_weight<std::uint64_t>(graph, sets);

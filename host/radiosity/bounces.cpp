@@ -17,8 +17,8 @@ constexpr unsigned most_passes = 10000;
 double power_share(const ExchangeProblem& problem, const std::vector<double>& values) {
   std::array<double, 3> entered{}, power{};
   for (std::size_t i = 0; i < values.size(); ++i) {
-    entered[i % 3] += problem.area[i / 3] * std::fabs(problem.emission[i]);
-    power[i % 3] += problem.area[i / 3] * std::fabs(values[i]);
+    entered[i % 3] += double{problem.area[i / 3]} * std::fabs(double{problem.emission[i]});
+    power[i % 3] += double{problem.area[i / 3]} * std::fabs(values[i]);
   }
   double worst = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
@@ -30,12 +30,13 @@ double power_share(const ExchangeProblem& problem, const std::vector<double>& va
 
 RadiosityField solve_by_bounces(const ExchangePass& pass, const ExchangedPoints& exchanged, const EnteringLight& light,
                                 const BounceOptions& options) {
-  if (exchanged.place.size == 0) return dark_field(light);
+  if (exchanged.size() == 0) return dark_field(light);
   const ExchangeProblem problem = exchange_problem(exchanged, light);
   const SolveOptions usual;
   RadiosityField field;
   Solution& solution = field.solution;
-  std::vector<double> total = problem.emission, sent = problem.emission, gathered, irradiance(total.size(), 0.0);
+  std::vector<double> total(problem.emission.begin(), problem.emission.end()), sent = total, gathered,
+                                                                               irradiance(total.size(), 0.0);
   double before = power_share(problem, sent);
   if (before == 0.0) { // dark
     solution.end = SolveEnd::converged;
@@ -49,8 +50,8 @@ RadiosityField solve_by_bounces(const ExchangePass& pass, const ExchangedPoints&
     ++solution.applies;
     std::vector<double> change(total.size());
     for (std::size_t i = 0; i < total.size(); ++i) {
-      const double reflected = problem.albedo[i] * gathered[i];
-      change[i] = options.whole ? problem.emission[i] + reflected - total[i] : reflected;
+      const double reflected = double{problem.albedo[i]} * gathered[i];
+      change[i] = options.whole ? double{problem.emission[i]} + reflected - total[i] : reflected;
       irradiance[i] = gathered[i] + (options.whole ? 0.0 : irradiance[i]);
       total[i] += change[i];
     }

@@ -10,7 +10,7 @@ namespace {
 class PreparedCones : public PreparedRadiosity {
 public:
   PreparedCones(Session& session, const ExchangeScene& scene, const RadiositySettings& settings)
-      : places_(exchanging_points(scene)), points_(points_at(scene, places_)), at_pixels_(settings.at == "pixels") {
+      : pool_(scene.points), places_(exchanging_points(scene)), at_pixels_(settings.at == "pixels") {
     if (places_.empty()) return;
     const VoxelOptions options{static_cast<unsigned>(settings.voxels), settings.anisotropic};
     exchange_ =
@@ -18,7 +18,7 @@ public:
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
-    return solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
+    return solve_by_operator(exchange_.get(), {pool_, places_}, light, tolerance, report);
   }
   std::optional<DeviceCones> cones_of(View<float> radiosity) override {
     if (!exchange_ || !at_pixels_) return std::nullopt;
@@ -38,8 +38,8 @@ public:
   }
 
 private:
+  View<Splat> pool_;
   std::vector<std::uint32_t> places_;
-  std::vector<Splat> points_;
   bool at_pixels_;
   std::unique_ptr<ConeExchange> exchange_; ///< absent: nothing exchanges light
 };

@@ -11,20 +11,20 @@ namespace {
 class PreparedDirect : public PreparedRadiosity {
 public:
   PreparedDirect(Session& session, const ExchangeScene& scene, const WorkReport& report)
-      : places_(exchanging_points(scene)),
-        points_(points_at(scene, places_)) { // whose order keeps close points together
+      : pool_(scene.points), places_(exchanging_points(scene)) { // whose order keeps close points together
     if (places_.empty()) return;
+    const std::vector<Splat> points = points_at(scene, places_);
     DirectOptions options;
     options.step_delta = static_cast<float>(scene.variant.step_delta / scene.side);
     options.progress = [&](double share) {
       report(std::to_string(static_cast<int>(100.0 * share)) + " % of the rays");
     };
-    log_info("direct: the visibility of all pairs takes {}", megabytes(direct_bytes(points_.size())));
-    exchange_ = std::make_unique<DeviceDirect>(session, scene.pools, scene.variant, points_, options);
+    log_info("direct: the visibility of all pairs takes {}", megabytes(direct_bytes(points.size())));
+    exchange_ = std::make_unique<DeviceDirect>(session, scene.pools, scene.variant, points, options);
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
-    return solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
+    return solve_by_operator(exchange_.get(), {pool_, places_}, light, tolerance, report);
   }
   std::uint64_t rays() const override { return exchange_ ? exchange_->rays() : 0; }
   std::string summary() const override { return "a ray a pair"; }
@@ -34,8 +34,8 @@ public:
   }
 
 private:
+  View<Splat> pool_;
   std::vector<std::uint32_t> places_;
-  std::vector<Splat> points_;
   std::unique_ptr<DeviceDirect> exchange_; ///< absent: nothing exchanges light
 };
 

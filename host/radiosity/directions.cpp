@@ -16,6 +16,7 @@ cl_uint points_an_item(const TraversalVariant& variant, DirectionPattern pattern
 }
 
 constexpr std::size_t receive_group = 64;
+constexpr std::size_t piece = 1 << 18;      ///< points whose light travels between host and device at once
 constexpr std::size_t most_rays = 1u << 30; ///< of the smallest launch: their count has 32 bits
 
 /// Points whose hits lie together; of beams besides. Bands begin at whole blocks.
@@ -28,44 +29,49 @@ std::uint64_t in_whole_blocks(std::uint64_t points) {
 
 } // namespace
 
+std::uint64_t bytes_for_hits(std::uint64_t left, std::size_t pool) {
+  constexpr std::uint64_t a_run = 350, least = 24; // a point
+  const std::uint64_t usable = left / 4 * 3, an_apply = 2 * sizeof(cl_float4) * pool;
+  const std::uint64_t room = usable - std::min(usable, an_apply);
+  return std::max(room - std::min(room, a_run * pool), std::min(room, least * pool));
+}
+
 DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                    View<Splat> pool, View<std::uint32_t> places, const DirectionsOptions& options)
     : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
       pool_points_(pool.size), points_an_item_(points_an_item(variant, options.pattern)),
       group_(points_an_item_ > 1 ? 1 : variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
-      places_(places.begin(), places.end()), rank_(places_.size()),
+      places_(places.begin(), places.end()),
       trace_pace_(first_traced / points_an_item_,
                   std::min<std::size_t>(busy_work_items(session.info()),
                                         most_rays / points_an_item_ / set_.weights.size() + 1)),
       receive_pace_(first_received, busy_work_items(session.info())) {
   if (places_.empty()) return;
+  if (!std::is_sorted(places_.begin(), places_.end())) throw std::invalid_argument("directions: places do not ascend");
   const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
   trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
   receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
   see_sky_ = session.kernel("radiosity/directions/receive.cl", "", "sky_by_directions");
-  const std::vector<std::uint32_t> traced = points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_;
-  place_buffer_ = session.upload(traced);
+  order_ = points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_;
+  place_buffer_ = session.upload(order_);
+  if (places_.back() + std::size_t{1} != places_.size()) // else each point is its own place
+    for (std::uint32_t& place : order_)
+      place = static_cast<std::uint32_t>(std::lower_bound(places_.begin(), places_.end(), place) - places_.begin());
   cells_ = session.upload(set_.cells);
   weights_ = session.upload(set_.weights);
   ways_ = session.allocate<float>(places_.size());
   ray_count_ = session.allocate<cl_uint>(2);
-  std::vector<std::uint32_t> at(pool_points_);
-  for (std::size_t i = 0; i < traced.size(); ++i)
-    at[traced[i]] = static_cast<std::uint32_t>(i);
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    rank_[i] = at[places_[i]];
   irradiance_ = session.allocate<cl_float4>(places_.size());
   keep_bands(options);
 }
 
 void DeviceDirections::keep_bands(const DirectionsOptions& options) {
   const std::uint64_t a_point = sizeof(cl_uint) * set_.weights.size(), points = places_.size();
-  const std::uint64_t piece = session_.info().max_allocation_bytes;
-  // A quarter is left to the stages that follow, and room for what an apply sends and receives.
-  const std::uint64_t left = session_.bytes_left() / 4 * 3, an_apply = 2 * sizeof(cl_float4) * pool_points_;
-  const std::uint64_t available =
-      options.memory_bytes != 0 ? options.memory_bytes : std::max<std::uint64_t>(1, left - std::min(left, an_apply));
-  const std::uint64_t largest = std::max<std::uint64_t>(block, in_whole_blocks(piece / a_point));
+  const std::uint64_t one_buffer = session_.info().max_allocation_bytes;
+  const std::uint64_t available = options.memory_bytes != 0
+                                      ? options.memory_bytes
+                                      : std::max<std::uint64_t>(1, bytes_for_hits(session_.bytes_left(), pool_points_));
+  const std::uint64_t largest = std::max<std::uint64_t>(block, in_whole_blocks(one_buffer / a_point));
   // A band that is not kept needs its room, too.
   at_once_ = static_cast<cl_uint>(std::clamp<std::uint64_t>(in_whole_blocks(available / 8 / a_point), block,
                                                             std::min<std::uint64_t>(largest, 1u << 16)));
@@ -149,26 +155,38 @@ std::vector<float> DeviceDirections::mean_ways() {
 std::vector<float> DeviceDirections::in_order_of_places(const Buffer<float>& traced) {
   const auto found = session_.download(traced, places_.size());
   std::vector<float> of_places(places_.size());
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    of_places[i] = found[rank_[i]];
+  for (std::size_t k = 0; k < places_.size(); ++k)
+    of_places[order_[k]] = found[k];
   return of_places;
+}
+
+/// Of all points of the pool, 0 of those that exchange none; in pieces, so that the host needs no copy of them all.
+Buffer<cl_float4> DeviceDirections::upload_radiosity(View<double> radiosity) {
+  const auto sent = session_.allocate<cl_float4>(pool_points_, CL_MEM_READ_ONLY);
+  std::vector<cl_float4> texels;
+  for (std::size_t first = 0, i = 0; first < pool_points_; first += piece) {
+    const std::size_t end = std::min(pool_points_, first + piece);
+    texels.assign(end - first, cl_float4{{0, 0, 0, 0}});
+    for (; i < places_.size() && places_[i] < end; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        texels[places_[i] - first].s[c] = static_cast<float>(radiosity[3 * i + c]);
+    session_.write(sent, texels.data(), texels.size(), first);
+  }
+  return sent;
 }
 
 void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::vector<double>& irradiance) {
   if (radiosity.size != 3 * places_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
-  irradiance.clear();
-  if (places_.empty()) return;
-  std::vector<cl_float4> of_pool(pool_points_, cl_float4{{0, 0, 0, 0}});
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      of_pool[places_[i]].s[c] = static_cast<float>(radiosity[3 * i + c]);
-  const auto sent = session_.upload(of_pool);
-  for_each_band([&](const Band& band) { receive(band, sent); });
-  const auto received = session_.download(irradiance_, places_.size());
   irradiance.resize(radiosity.size);
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      irradiance[3 * i + c] = received[rank_[i]].s[c];
+  if (places_.empty()) return;
+  const auto sent = upload_radiosity(radiosity);
+  for_each_band([&](const Band& band) { receive(band, sent); });
+  for (std::size_t first = 0; first < places_.size(); first += piece) {
+    const auto received = session_.download(irradiance_, std::min(piece, places_.size() - first), first);
+    for (std::size_t k = 0; k < received.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        irradiance[3 * std::size_t{order_[first + k]} + c] = double{received[k].s[c]};
+  }
 }
 
 std::uint64_t DeviceDirections::kept_bytes() const {

@@ -16,18 +16,23 @@ struct DirectionsOptions {
   unsigned directions = 128; ///< a point
   unsigned seed = 1;
   float step_delta = 0.0f;                    ///< root cube units, of the absolute-delta variant only
-  std::uint64_t memory_bytes = 0;             ///< what kept hits may take, 4 bytes a ray; 0: what the device has left
+  std::uint64_t memory_bytes = 0;             ///< what kept hits may take, 4 bytes a ray; 0: bytes_for_hits()
   std::function<void(double share)> progress; ///< of the rays that are kept, [0, 1], after every launch; may be empty
 };
+
+/// Bytes that hits may take of those that a device has `left`: three quarters, less what an apply sends and receives,
+/// the rest being for later stages; less 350 for each point of the pool, which is what a run may come to on host and
+/// device besides. Of a pool so large that nothing is left then, 24 a point, by which the device holds 150 in all.
+std::uint64_t bytes_for_hits(std::uint64_t left, std::size_t pool);
 
 /// Traces the directions of all points and keeps the hits, as many as fit; those of the other points are traced again
 /// at each apply. The same bits either way, and for any launches: what a point sees depends on it and the seed alone.
 class DeviceDirections : public RadiosityOperator {
 public:
-  /// `places`: of the points that exchange light, in the pool, whose points are `pool`. `pools` are those of `variant`
-  /// and hold all that blocks. With grouping packet, direction k of BEAM_RAYS points is traced as one beam, but through
-  /// patches and for hemicubes (directions_in_beams). `session` and `pools` must outlive this. Throws Error(device),
-  /// Error(memory).
+  /// `places`: of the points that exchange light, ascending, in the pool, whose points are `pool`. `pools` are those of
+  /// `variant` and hold all that blocks. With grouping packet, direction k of BEAM_RAYS points is traced as one beam,
+  /// but through patches and for hemicubes (directions_in_beams). `session` and `pools` must outlive this. Throws
+  /// Error(device), Error(memory); std::invalid_argument where places do not ascend.
   DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, View<Splat> pool,
                    View<std::uint32_t> places, const DirectionsOptions& options);
 
@@ -60,6 +65,7 @@ private:
   void keep_bands(const DirectionsOptions& options);
   /// progress: of the band's points.
   void trace(const Band& band, const std::function<void(double)>& progress);
+  Buffer<cl_float4> upload_radiosity(View<double> radiosity);
   void receive(const Band& band, const Buffer<cl_float4>& radiosity);
   /// Of all points, in bands: those that are kept, and then the others, traced again.
   void for_each_band(const std::function<void(const Band&)>& use);
@@ -74,7 +80,7 @@ private:
   cl_uint seed_;
   float step_delta_;
   std::vector<std::uint32_t> places_; ///< as given
-  std::vector<std::uint32_t> rank_;   ///< of each in the order in which they are traced: blocks of beams
+  std::vector<std::uint32_t> order_;  ///< index into `places_` of each that is traced, in their order: blocks of beams
   std::vector<Band> bands_;           ///< kept: from the first point on
   cl_uint kept_ = 0, at_once_ = 0;    ///< points of all of these; of a band that is not
   Buffer<cl_uint> place_buffer_, ray_count_;

@@ -15,7 +15,7 @@ class PreparedDirections : public PreparedRadiosity {
 public:
   PreparedDirections(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                      const WorkReport& report)
-      : pool_points_(scene.points.size), places_(exchanging_points(scene)), points_(points_at(scene, places_)) {
+      : pool_(scene.points), places_(exchanging_points(scene)) {
     if (places_.empty()) return;
     DirectionsOptions options;
     options.directions = static_cast<unsigned>(settings.directions);
@@ -27,11 +27,11 @@ public:
     };
     exchange_ = std::make_unique<DeviceDirections>(session, scene.pools, scene.variant, scene.points, places_, options);
     if (settings.share && exchange_->keeps_all() && places_.size() <= most_that_share)
-      shared_ = std::make_unique<SharedIrradiance>(points_, exchange_->mean_ways());
+      shared_ = std::make_unique<SharedIrradiance>(scene.points, places_, exchange_->mean_ways());
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
-    RadiosityField field = solve_by_operator(exchange_.get(), {points_, places_}, light, tolerance, report);
+    RadiosityField field = solve_by_operator(exchange_.get(), {pool_, places_}, light, tolerance, report);
     if (!shared_) return field;
     std::vector<float> irradiance(3 * places_.size());
     for (std::size_t i = 0; i < irradiance.size(); ++i)
@@ -42,7 +42,7 @@ public:
     return field;
   }
   std::vector<float> sky_share() override {
-    std::vector<float> of_pool(pool_points_);
+    std::vector<float> of_pool(pool_.size);
     if (!exchange_) return of_pool;
     std::vector<float> share = exchange_->sky_share();
     if (shared_) shared_->share(share, 1);
@@ -62,9 +62,8 @@ public:
   }
 
 private:
-  std::size_t pool_points_;
+  View<Splat> pool_;
   std::vector<std::uint32_t> places_;
-  std::vector<Splat> points_;
   std::unique_ptr<DeviceDirections> exchange_; ///< absent: nothing exchanges light
   std::unique_ptr<SharedIrradiance> shared_;   ///< absent: each point is left with what its own rays find
 };

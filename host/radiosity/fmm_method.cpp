@@ -9,8 +9,8 @@ namespace {
 
 class PreparedFmm : public PreparedRadiosity {
 public:
-  PreparedFmm(Session& session, RadiosityMap map, const RadiositySettings& settings)
-      : map_(std::move(map)), order_(static_cast<unsigned>(settings.order)) {
+  PreparedFmm(Session& session, View<Splat> pool, RadiosityMap map, const RadiositySettings& settings)
+      : pool_(pool), map_(std::move(map)), order_(static_cast<unsigned>(settings.order)) {
     if (map_.place.empty()) return;
     FmmOptions options;
     options.grid.order = order_;
@@ -19,7 +19,7 @@ public:
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
-    return solve_by_operator(exchange_.get(), {map_.tree.points, map_.place}, light, tolerance, report);
+    return solve_by_operator(exchange_.get(), {pool_, map_.place}, light, tolerance, report);
   }
   std::uint64_t rays() const override { return map_.vmap.statistics.rays; }
   std::string summary() const override {
@@ -43,15 +43,17 @@ public:
   }
 
 private:
+  View<Splat> pool_;
   RadiosityMap map_; ///< which the operator refers to
   unsigned order_;
   std::unique_ptr<DeviceFmm> exchange_; ///< absent: nothing exchanges light
   ExchangeCounts counts_;
 };
 
-std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene&, const RadiositySettings& settings,
-                                           std::optional<RadiosityMap> map, const WorkReport&) {
-  return std::make_unique<PreparedFmm>(session, std::move(map.value()), settings);
+std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene& scene,
+                                           const RadiositySettings& settings, std::optional<RadiosityMap> map,
+                                           const WorkReport&) {
+  return std::make_unique<PreparedFmm>(session, scene.points, std::move(map.value()), settings);
 }
 
 } // namespace

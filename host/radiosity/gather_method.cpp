@@ -19,7 +19,8 @@ class PreparedGather : public PreparedRadiosity {
 public:
   PreparedGather(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
                  const WorkReport& report)
-      : report_(report), sampling_(settings.sampling), passes_(static_cast<unsigned>(settings.passes)) {
+      : report_(report), pool_(scene.points), sampling_(settings.sampling),
+        passes_(static_cast<unsigned>(settings.passes)) {
     const std::vector<std::uint32_t> places = exchanging_points(scene);
     if (places.empty()) return;
     tree_ = build_clusters(points_at(scene, places), ClusterOptions{});
@@ -65,7 +66,7 @@ public:
       report_(std::to_string(number + 1) + " passes");
       return gather_->is_refined();
     };
-    return solve_by_bounces(pass, {tree_.points, places_}, light, options);
+    return solve_by_bounces(pass, {pool_, places_}, light, options);
   }
 
   std::uint64_t rays() const override { return gather_ ? gather_->rays() : 0; }
@@ -80,6 +81,7 @@ public:
 
 private:
   WorkReport report_;
+  View<Splat> pool_;
   std::string sampling_;
   unsigned passes_, pass_ = 0;
   bool refines_ = false;

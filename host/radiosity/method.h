@@ -72,7 +72,8 @@ struct RadiosityMethod {
   const char* without_vmap; ///< nullptr: it needs the V-map; else why not, which --stats says of the stage `vmap`
   bool is_linear; ///< the solution of a sum of lights is the sum of theirs, to the method's own error: light that
                   ///< enters later may be solved by itself
-  /// `map`: of map_visibility(); absent where the method needs none. Session and pools must outlive what is returned.
+  /// `map`: of map_visibility(); absent where the method needs none. Session, pools and the scene's points must outlive
+  /// what is returned.
   /// Throws Error(device), Error(memory).
   std::unique_ptr<PreparedRadiosity> (*prepare)(Session& session, const ExchangeScene& scene,
                                                 const RadiositySettings& settings, std::optional<RadiosityMap> map,

@@ -27,9 +27,10 @@ std::string millions(double rays) {
 /// Sums up to `enough`, over pairs of clusters: power that one sends times what of it the other may get.
 class ExchangeBound {
 public:
-  ExchangeBound(const ClusterTree& tree, View<double> radiosity) : tree_(tree), flux_(tree.nodes.size()) {
+  ExchangeBound(const ClusterTree& tree, View<float> radiosity) : tree_(tree), flux_(tree.nodes.size()) {
+    point_flux_.reserve(tree.points.size());
     for (std::size_t i = 0; i < tree.points.size(); ++i)
-      point_flux_.push_back((radiosity[3 * i] + radiosity[3 * i + 1] + radiosity[3 * i + 2]) *
+      point_flux_.push_back((double{radiosity[3 * i]} + double{radiosity[3 * i + 1]} + double{radiosity[3 * i + 2]}) *
                             double{tree.points[i].area});
     for (std::size_t node = 0; node < tree.nodes.size(); ++node) {
       const Cluster& c = tree.nodes[node];
@@ -103,7 +104,7 @@ private:
 
 } // namespace
 
-double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double albedo, double enough) {
+double bound_of_exchange(const ClusterTree& tree, View<float> radiosity, double albedo, double enough) {
   if (tree.points.empty()) return 0.0;
   ExchangeBound bound(tree, radiosity);
   if (!(bound.sent() > 0.0)) return 0.0;

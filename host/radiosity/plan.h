@@ -25,6 +25,6 @@ MethodPlan plan_method(Session& session, const ExchangeScene& scene, const Radio
 /// [W/m², points x 3 in the tree's order, radiosity], where nothing stood between any two. `albedo`: the largest of all
 /// points. Stops where the bound passes `enough`, and returns what it found until then; infinity where it cannot be
 /// told in time that grows as the points.
-double bound_of_exchange(const ClusterTree& tree, View<double> radiosity, double albedo, double enough);
+double bound_of_exchange(const ClusterTree& tree, View<float> radiosity, double albedo, double enough);
 
 } // namespace pointgi

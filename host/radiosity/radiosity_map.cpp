@@ -11,10 +11,16 @@
 namespace pointgi {
 
 std::vector<std::uint32_t> exchanging_points(const ExchangeScene& scene) {
-  std::vector<std::uint32_t> places;
+  const auto exchanges = [&](std::uint32_t p) {
+    return scene.exchanges.size == 0 || scene.exchanges[material_of(scene.points[p])] != 0;
+  };
+  std::size_t count = 0;
   for (std::uint32_t p = 0; p < scene.points.size; ++p)
-    if (scene.exchanges.size == 0 || scene.exchanges[static_cast<std::size_t>(scene.points[p].material)] != 0)
-      places.push_back(p);
+    count += exchanges(p);
+  std::vector<std::uint32_t> places;
+  places.reserve(count);
+  for (std::uint32_t p = 0; p < scene.points.size; ++p)
+    if (exchanges(p)) places.push_back(p);
   return places;
 }
 
@@ -96,13 +102,16 @@ std::uint64_t most_vmap_rays(const RadiositySettings& settings, std::size_t poin
 RadiosityMap cluster_points(Session& session, const ExchangeScene& scene, const RadiositySettings& settings) {
   RadiosityMap map;
   const std::vector<std::uint32_t> places = exchanging_points(scene);
-  const std::vector<Splat> points = points_at(scene, places);
+  const bool all = places.size() == scene.points.size; // which are not copied
+  const std::vector<Splat> some = all ? std::vector<Splat>() : points_at(scene, places);
+  const View<Splat> points = all ? scene.points : View<Splat>(some);
   const auto ask = [&](View<Splat> ends, View<Segment> segments) {
     return DeviceVisibility(session, scene.pools, scene.variant, ends, step_delta_of(scene)).blocked(segments);
   };
   std::vector<std::uint32_t> parts;
   if (settings.vmap != "thesis") parts = parts_of_faces(points, ask);
   map.tree = build_clusters(points, ClusterOptions{}, parts);
+  map.place.reserve(places.size());
   for (const std::uint32_t k : map.tree.order)
     map.place.push_back(places[k]);
   return map;

@@ -23,11 +23,11 @@ double cosine_of(const Splat& a, const Splat& b) {
 
 } // namespace
 
-SharedIrradiance::SharedIrradiance(View<Splat> points, std::vector<float> ways)
-    : points_(points.begin(), points.end()), ways_(std::move(ways)) {
+SharedIrradiance::SharedIrradiance(View<Splat> pool, const std::vector<std::uint32_t>& places, std::vector<float> ways)
+    : pool_(pool), places_(places), ways_(std::move(ways)) {
   std::vector<Eigen::Vector3d> positions;
-  for (const Splat& p : points_)
-    positions.emplace_back(p.position[0], p.position[1], p.position[2]);
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    positions.emplace_back(point(i).position[0], point(i).position[1], point(i).position[2]);
   if (positions.size() > 1) sites_ = std::make_unique<Sites>(positions);
 }
 
@@ -46,8 +46,8 @@ void SharedIrradiance::share(std::vector<float>& values, std::size_t channels) c
         for (unsigned n = 0; n < found; ++n)
           for (const std::uint32_t j : sites_->points(near[n].site)) {
             const double way = std::min(ways_[i], ways_[j]);
-            const double turn = std::sqrt(std::max(0.0, 1.0 - cosine_of(points_[i], points_[j])));
-            const double w = 1.0 - (std::sqrt(distance2(points_[i], points_[j])) / way + turn) / least_error;
+            const double turn = std::sqrt(std::max(0.0, 1.0 - cosine_of(point(i), point(j))));
+            const double w = 1.0 - (std::sqrt(distance2(point(i), point(j))) / way + turn) / least_error;
             if (!(w > 0.0)) continue;
             weight += w;
             for (std::size_t c = 0; c < channels; ++c)

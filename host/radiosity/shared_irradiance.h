@@ -10,9 +10,9 @@ namespace pointgi {
 
 class SharedIrradiance {
 public:
-  /// `ways`: of each point the harmonic mean of the lengths of its rays [of the points' unit]: irradiance changes over
-  /// that length, and no faster.
-  SharedIrradiance(View<Splat> points, std::vector<float> ways);
+  /// Of the points at `places` of `pool`, which must outlive this. `ways`: of each the harmonic mean of the lengths of its
+  /// rays [unit of the positions]: irradiance changes over that length, and no faster.
+  SharedIrradiance(View<Splat> pool, const std::vector<std::uint32_t>& places, std::vector<float> ways);
 
   /// `values` [points x channels]: of each point the mean over itself and its neighbours, weighted by 1 - e /
   /// least_error, where e = distance / way + sqrt(1 - cosine of the normals) is Ward's bound of the error that the
@@ -23,7 +23,10 @@ public:
   static constexpr unsigned most_neighbours = 24;
 
 private:
-  std::vector<Splat> points_;
+  const Splat& point(std::size_t i) const { return pool_[places_[i]]; }
+
+  View<Splat> pool_;
+  std::vector<std::uint32_t> places_;
   std::vector<float> ways_;
   std::unique_ptr<Sites> sites_; ///< null: too few points
 };

@@ -4,16 +4,19 @@
 
 namespace pointgi {
 
-/// The points that exchange light, and where each stands in the pool.
+/// The points that exchange light, given by where each stands in the pool.
 struct ExchangedPoints {
-  View<Splat> points;
+  View<Splat> pool;
   View<std::uint32_t> place;
+
+  std::size_t size() const { return place.size; }
+  const Splat& operator[](std::size_t k) const { return pool[place[k]]; }
 };
 
 /// What there is to solve, in the order of the exchanged points.
 struct ExchangeProblem {
-  std::vector<double> emission, albedo; ///< [points x 3]: E with rho H_direct, W/m²; rho
-  std::vector<double> area;             ///< [points]
+  std::vector<float> emission, albedo; ///< [points x 3]: E with rho H_direct, W/m²; rho
+  std::vector<float> area;             ///< [points]
 };
 
 /// Throws std::invalid_argument on sizes that differ.

@@ -3,6 +3,7 @@
 #include "host/lights/environment_map.h"
 #include "host/radiosity/direct.h"
 #include "host/radiosity/direction_set.h"
+#include "host/radiosity/directions.h"
 #include "host/radiosity/gather.h"
 #include "host/radiosity/voxel_pyramid.h"
 #include "host/render/render.h"
@@ -21,17 +22,16 @@ std::uint64_t plane_bytes(std::uint64_t points) {
   return 13 * sizeof(cl_float) * points;
 }
 
-/// Hits of all points, or those that fit beside what an apply sends and receives and a quarter for later stages; places
-/// and irradiance of the points (host/radiosity/directions.h).
+/// Hits of all points, or those that fit (bytes_for_hits); places and irradiance of the points, what an apply sends.
 DeviceNeed directions_need(const RadiositySettings& settings, const ExchangedCount& count, std::uint64_t left) {
   const DirectionPattern pattern =
       settings.direction_set == "hemicube" ? DirectionPattern::hemicube : DirectionPattern::stratified;
   const std::uint64_t a_point =
       sizeof(cl_uint) * direction_set(pattern, static_cast<unsigned>(settings.directions)).weights.size();
-  const std::uint64_t an_apply = 2 * texel * count.pool, most = left / 4 * 3 - std::min(left / 4 * 3, an_apply);
   const std::uint64_t always = (sizeof(cl_uint) + texel) * count.points + texel * count.pool + 5 * a_point;
   constexpr std::uint64_t block = 16; // of points, the least that are traced at a time
-  return {always + block * a_point, always + std::min(a_point * (count.points + block), most)};
+  return {always + block * a_point,
+          always + std::min(a_point * (count.points + block), bytes_for_hits(left, count.pool))};
 }
 
 DeviceNeed pairs_need(const ExchangedCount& count, bool keeps) {

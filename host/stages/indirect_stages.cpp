@@ -4,6 +4,7 @@
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
 #include "host/stages/require_memory.h"
+#include "octree/parallel.h"
 #include <algorithm>
 #include <stdexcept>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr int indirect_light_samples = 16;
 /// Of light that enters besides, however little.
 constexpr double coarsest_tolerance = 0.1;
+constexpr std::size_t grain = 1 << 14; ///< points that a thread takes at a time
 
 /// Progress of a stage, and an end on request, both at every launch of the device.
 class StageWatch {
@@ -111,22 +113,28 @@ std::vector<std::uint8_t> exchanging_materials(const Scene& scene) {
 
 std::vector<float> emitted_radiosity(const DeviceLighting& lighting, View<Splat> points) {
   std::vector<float> emitted(3 * points.size);
-  for (std::size_t p = 0; p < points.size; ++p)
-    for (std::size_t c = 0; c < 3; ++c)
-      emitted[3 * p + c] = 3.14159265f * lighting.materials[static_cast<std::size_t>(points[p].material)].emission[c];
+  parallel_ranges(points.size, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      for (std::size_t c = 0; c < 3; ++c)
+        emitted[3 * p + c] = 3.14159265f * lighting.materials[material_of(points[p])].emission[c];
+  });
   return emitted;
 }
 
 std::vector<float> reflected_radiosity(const IndirectRequest& request, const std::vector<View<float>>& irradiances) {
   std::vector<float> reflected(3 * request.points.size);
-  for (std::size_t i = 0; i < reflected.size(); ++i) {
-    const Splat& s = request.points[i / 3];
-    if (!exchanges_light(request.scene.materials[static_cast<std::size_t>(s.material)])) continue;
-    float irradiance = 0.0f;
-    for (const View<float>& one : irradiances)
-      if (one.size > 0) irradiance += one[i];
-    reflected[i] = s.colour[i % 3] * irradiance;
-  }
+  parallel_ranges(request.points.size, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const Splat& s = request.points[p];
+      if (!exchanges_light(request.scene.materials[material_of(s)])) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        float irradiance = 0.0f;
+        for (const View<float>& one : irradiances)
+          if (one.size > 0) irradiance += one[3 * p + c];
+        reflected[3 * p + c] = s.colour[c] * irradiance;
+      }
+    }
+  });
   return reflected;
 }
 
@@ -142,13 +150,15 @@ bool direct_light_by_radiosity(const Scene& scene) {
 }
 
 Buffer<cl_float4> upload_irradiance(Session& session, const IndirectLight& light, const Scene& scene) {
-  std::vector<float> sum = light.from_surfaces;
-  if (light.at_pixels) std::fill(sum.begin(), sum.end(), 0.0f);
-  for (std::size_t i = 0; i < sum.size() && direct_light_by_radiosity(scene); ++i)
-    sum[i] += light.direct[i];
-  std::vector<cl_float4> texels(sum.size() / 3);
-  for (std::size_t i = 0; i < texels.size(); ++i)
-    texels[i] = {{sum[3 * i], sum[3 * i + 1], sum[3 * i + 2], 0.0f}};
+  const bool with_direct = direct_light_by_radiosity(scene);
+  std::vector<cl_float4> texels(light.from_surfaces.size() / 3);
+  parallel_ranges(texels.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        texels[i].s[c] = light.at_pixels ? 0.0f : light.from_surfaces[3 * i + c];
+        if (with_direct) texels[i].s[c] += light.direct[3 * i + c];
+      }
+  });
   return session.upload(texels);
 }
 
@@ -229,13 +239,14 @@ std::vector<float> sky_by_method(const IndirectRequest& request, PreparedRadiosi
 bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, View<float> direct) {
   const double least = request.scene.radiosity.least_share;
   double albedo = 0.0, brightest = 0.0;
-  std::vector<double> reflected;
+  std::vector<float> reflected;
+  reflected.reserve(3 * clusters.place.size());
   for (std::size_t k = 0; k < clusters.place.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c) {
-      const double rho = clusters.tree.points[k].colour[c];
-      albedo = std::max(albedo, rho);
-      reflected.push_back(rho * direct[3 * clusters.place[k] + c]);
-      brightest = std::max(brightest, reflected.back());
+      const float rho = clusters.tree.points[k].colour[c];
+      albedo = std::max(albedo, double{rho});
+      reflected.push_back(rho * direct[3 * std::size_t{clusters.place[k]} + c]);
+      brightest = std::max(brightest, double{reflected.back()});
     }
   if (!(brightest > 0.0)) return true; // who solves for no light says what is wrong
   return bound_of_exchange(clusters.tree, reflected, albedo, least) > least;
@@ -272,6 +283,11 @@ ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, cons
 
 namespace {
 
+/// All irradiance that surfaces passed on besides from_surfaces.
+const std::vector<float>& entered(const IndirectLight& light) {
+  return light.entered.empty() ? light.direct : light.entered;
+}
+
 /// What enters first: lights, what shines, and photons by way of specular surfaces. light.direct: that of lamps and
 /// [[light]]s, if it is there already; `sky`: likewise.
 RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, const ExchangeScene& exchange,
@@ -293,9 +309,11 @@ RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, c
   light.direct = sum_of(std::move(light.direct), sky);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
-  std::vector<float> entering = light.direct;
-  for (std::size_t i = 0; i < request.caustic.size; ++i)
-    entering[i] += request.caustic[i];
+  if (request.caustic.size != 0) {
+    light.entered = light.direct;
+    for (std::size_t i = 0; i < request.caustic.size; ++i)
+      light.entered[i] += request.caustic[i];
+  }
   if (request.after_pass)
     light.prepared->after_pass = [&](unsigned pass, const std::vector<float>& irradiance) {
       IndirectLight so_far;
@@ -303,9 +321,8 @@ RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, c
       so_far.from_surfaces = irradiance;
       request.after_pass(pass, so_far);
     };
-  RadiosityField field = light.prepared->solve({entering, emitted}, settings.tolerance, watch.report());
+  RadiosityField field = light.prepared->solve({entered(light), emitted}, settings.tolerance, watch.report());
   light.prepared->after_pass = {};
-  light.entered = std::move(entering);
   stages.finish(request.points.size, "points");
   return field;
 }
@@ -436,15 +453,17 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     }
   } else if (light.method->without_vmap != nullptr)
     without_vmap = light.method->without_vmap;
-  if (light.method->without_vmap != nullptr)
+  if (light.method->without_vmap != nullptr) {
+    clusters.reset();
     stages.skip("vmap", without_vmap);
-  else
+  } else
     map = run_vmap(session, exchange, request, std::move(clusters), expected, stages);
   RadiosityField field = run_exchange(session, std::move(map), exchange, request, std::move(sky), light, stages);
   light.rays = light.prepared->rays();
   light.statistics = light.prepared->statistics();
   light.from_surfaces = std::move(field.irradiance);
   light.solution = std::move(field.solution);
+  light.solution.radiosity = std::vector<double>(); // the picture is made of from_surfaces
   report_solution(light, light.solution);
   return light;
 }
@@ -458,6 +477,7 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   StageWatch watch(session);
   const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
   RadiosityField field = light.prepared->solve({entering, {}}, tolerance, watch.report());
+  if (light.entered.empty()) light.entered = light.direct;
   for (std::size_t i = 0; i < light.from_surfaces.size(); ++i) {
     light.from_surfaces[i] += field.irradiance[i];
     light.entered[i] += entering[i];
@@ -472,7 +492,7 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
 
 void finish_exchange(const IndirectRequest& request, IndirectLight& light) {
   if (light.prepared != nullptr) {
-    std::vector<float> radiosity = reflected_radiosity(request, {light.entered, light.from_surfaces});
+    std::vector<float> radiosity = reflected_radiosity(request, {entered(light), light.from_surfaces});
     if (direct_light_by_radiosity(request.scene)) {
       const std::vector<float> emitted = emitted_radiosity(request.lighting, request.points);
       for (std::size_t i = 0; i < radiosity.size(); ++i)

@@ -19,7 +19,8 @@ struct IndirectLight {
   std::uint64_t rays = 0; ///< that decided which points see each other
   std::vector<MethodStatistic> statistics;
   const RadiosityMethod* method = nullptr;     ///< that solved it, or would
-  std::vector<float> entered;                  ///< all irradiance that surfaces passed on besides from_surfaces
+  std::vector<float> entered;                  ///< all irradiance that surfaces passed on besides from_surfaces, where
+                                               ///< it is not `direct` alone
   std::optional<DeviceCones> at_pixels;        ///< by which pixels gather from_surfaces themselves; absent: they do not
   std::unique_ptr<PreparedRadiosity> prepared; ///< by which it was solved, for light that enters besides
 };

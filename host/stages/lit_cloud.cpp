@@ -21,6 +21,9 @@ void add_geometry(const Splat& s, const Frame& frame, PointCloud& cloud) {
 
 LitCloud bare_points(const IndirectRequest& scene) {
   LitCloud points;
+  points.cloud.position.reserve(scene.points.size); // exactly: doubled arrays of a large scan would not fit
+  points.cloud.normal.reserve(scene.points.size);
+  points.cloud.radius.reserve(scene.points.size);
   for (const Splat& s : scene.points)
     add_geometry(s, scene.frame, points.cloud);
   return points;
@@ -29,6 +32,9 @@ LitCloud bare_points(const IndirectRequest& scene) {
 LitCloud lit_cloud(const IndirectRequest& scene, const IndirectLight& light, std::optional<double> exposure) {
   LitCloud lit = bare_points(scene);
   lit.columns = {{"scalar_radiosity_r", {}}, {"scalar_radiosity_g", {}}, {"scalar_radiosity_b", {}}};
+  for (PlyColumn& column : lit.columns)
+    column.values.reserve(scene.points.size);
+  lit.cloud.colour.reserve(scene.points.size);
   const std::vector<float> emitted = emitted_radiosity(scene.lighting, scene.points);
   ExposureMeter meter;
   for (std::size_t p = 0; p < scene.points.size; ++p) {

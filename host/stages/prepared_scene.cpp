@@ -2,6 +2,7 @@
 #include "host/passes/build_pools.h"
 #include "host/run.h"
 #include "host/stages/require_memory.h"
+#include "octree/parallel.h"
 #include <algorithm>
 
 namespace pointgi {
@@ -20,8 +21,10 @@ DevicePools upload(Session& session, OctreePools&& pools, TraversalVariant& vari
 /// In the order of the pool, in place of those of the splats.
 Pool<std::uint32_t> ids_of(const Pool<std::uint32_t>& source, const std::vector<std::uint32_t>& of_splats) {
   Pool<std::uint32_t> ids(source.size());
-  for (std::size_t k = 0; k < source.size(); ++k)
-    ids[k] = of_splats[source[k]];
+  parallel_ranges(source.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      ids[k] = of_splats[source[k]];
+  });
   return ids;
 }
 
@@ -54,6 +57,7 @@ PreparedScene prepare_scene(Session& session, Scene& scene, bool bare, StageLog&
   ready.kinds = placed.kinds;
   ready.file_order = std::move(placed.file_order);
   ready.ids = ids_of(source_of(pools), placed.id);
+  std::vector<std::uint32_t>().swap(placed.id);
   require_pool_memory(session, {scene, points_of(pools), ready.ids, ready.first_ids, ready.frame.side}, ready.octree,
                       ready.choice.variant);
   ready.on_device = upload(session, std::move(pools), ready.choice.variant, ready.points);

@@ -1,4 +1,5 @@
 #include "host/stages/stages.h"
+#include "host/available_memory.h"
 #include "host/run.h"
 #include <algorithm>
 #include <limits>
@@ -23,6 +24,7 @@ void StageLog::finish(std::uint64_t items, const std::string& unit, double devic
   StageRecord& record = records_.back();
   record.seconds = seconds() - record.start;
   record.device_seconds = device_seconds;
+  record.host_peak_bytes = process_peak_bytes();
   record.items = items;
   record.unit = unit;
 }

@@ -16,6 +16,7 @@ struct StageRecord {
   double start = 0.0; ///< seconds since the log began
   double seconds = 0.0;
   double device_seconds = 0.0;
+  std::uint64_t host_peak_bytes = 0; ///< most that the process had held when the stage ended
   std::uint64_t items = 0;
   std::string unit; ///< of items: "points", "nodes", "rays", "pixels"
 };

@@ -150,12 +150,14 @@ class Clusters {
 public:
   Clusters(View<Splat> splats, const ClusterOptions& options, View<std::uint32_t> part)
       : options_(options), part_(part) {
-    TreeOptions tree_options;
-    tree_options.leaf_capacity = std::min(few_points, options.leaf_capacity);
-    tree_options.max_depth = options.max_depth;
-    tree_options.listing = Listing::centres;
-    const Tree cells = build_tree(splats, tree_options);
-    clusters_.order.assign(cells.order.begin(), cells.order.end());
+    {
+      TreeOptions tree_options;
+      tree_options.leaf_capacity = std::numeric_limits<unsigned>::max(); // of the tree only the order is wanted
+      tree_options.max_depth = options.max_depth;
+      tree_options.listing = Listing::centres;
+      const Tree cells = build_tree(splats, tree_options);
+      clusters_.order.assign(cells.order.begin(), cells.order.end());
+    }
     clusters_.points.resize(splats.size);
     clusters_.leaf_of.resize(splats.size);
     parallel_ranges(splats.size, point_grain, [&](std::size_t begin, std::size_t end) {
@@ -232,7 +234,7 @@ private:
   }
 
   /// Gives a part's points, each of a kind below `kinds`, the order of their kinds and keeps it within these; the
-  /// parts.
+  /// parts. Along the curve octants follow each other already, so that nothing large is copied.
   std::vector<Part> sorted_by_kind(const Part& part, const std::vector<std::uint8_t>& kind, std::uint32_t kinds,
                                    std::uint32_t level) {
     std::vector<Part> parts(kinds);
@@ -244,6 +246,13 @@ private:
       p.level = level;
       first += p.count;
     }
+    if (!std::is_sorted(kind.begin(), kind.begin() + part.count)) reorder(part, kind, parts);
+    parts.erase(std::remove_if(parts.begin(), parts.end(), [](const Part& p) { return p.count == 0; }), parts.end());
+    return parts;
+  }
+
+  /// The points of a part in the order of their kinds, each of which has its place among `parts`.
+  void reorder(const Part& part, const std::vector<std::uint8_t>& kind, const std::vector<Part>& parts) {
     std::vector<std::uint32_t> next, order(part.count);
     std::vector<Splat> points(part.count);
     for (const Part& p : parts)
@@ -254,8 +263,6 @@ private:
     }
     std::copy(order.begin(), order.end(), clusters_.order.begin() + part.first);
     std::copy(points.begin(), points.end(), clusters_.points.begin() + part.first);
-    parts.erase(std::remove_if(parts.begin(), parts.end(), [](const Part& p) { return p.count == 0; }), parts.end());
-    return parts;
   }
 
   /// Where a part holds several points of each of a few flat faces these divide it, and what lies on one only: a
@@ -392,6 +399,9 @@ void append_below(const ClusterTree& part, std::uint32_t root, std::uint32_t fir
 ClusterTree joined(View<Splat> splats, const ClusterTree (&parts)[2], const std::vector<std::uint32_t> (&input)[2]) {
   ClusterTree tree;
   tree.nodes.resize(3);
+  tree.order.reserve(splats.size);
+  tree.points.reserve(splats.size);
+  tree.leaf_of.reserve(splats.size);
   std::uint32_t first_point = 0;
   Moments moments;
   for (std::uint32_t p = 0; p < 2; ++p) {

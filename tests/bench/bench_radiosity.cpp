@@ -71,7 +71,8 @@ struct Field {
 /// `place[k]`: where the operator's point k stands in the pool.
 Field solve(RadiosityOperator& exchange, const test::LitRoom& room, View<std::uint32_t> place, double tolerance) {
   const std::size_t n = room.points.size();
-  std::vector<double> emission(3 * n), albedo(3 * n), area(n), h;
+  std::vector<float> emission(3 * n), albedo(3 * n), area(n);
+  std::vector<double> h;
   for (std::size_t k = 0; k < n; ++k) {
     const Splat& splat = room.points[place[k]];
     area[k] = splat.area;
@@ -89,7 +90,7 @@ Field solve(RadiosityOperator& exchange, const test::LitRoom& room, View<std::ui
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t c = 0; c < 3; ++c) {
       field.from_surfaces[3 * place[k] + c] = h[3 * k + c];
-      field.radiosity[3 * place[k] + c] = emission[3 * k + c] + albedo[3 * k + c] * h[3 * k + c];
+      field.radiosity[3 * place[k] + c] = double{emission[3 * k + c]} + double{albedo[3 * k + c]} * h[3 * k + c];
     }
   return field;
 }

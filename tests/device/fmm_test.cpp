@@ -78,8 +78,8 @@ TEST_CASE("fmm on the device: the same bits again, and a furnace") {
   device.apply(b, LinearisationPoint::current, again); // launches of another size by now
   CHECK(first == again);
 
-  const std::vector<double> emission(b.size(), 1.0), albedo(b.size(), 0.9);
-  std::vector<double> area;
+  const std::vector<float> emission(b.size(), 1.0f), albedo(b.size(), 0.9f);
+  std::vector<float> area;
   for (const Splat& s : tree.points)
     area.push_back(s.area);
   const Solution solution = solve_radiosity(device, emission, albedo, area, {});

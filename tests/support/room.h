@@ -10,7 +10,7 @@ struct Room {
   ClusterTree tree;
   std::vector<Link> links;
   std::unique_ptr<RadiosityOperator> exchange;
-  std::vector<double> area;
+  std::vector<float> area;
 
   /// make(tree, links) makes the operator.
   template <class Make>
@@ -23,19 +23,19 @@ struct Room {
 
   Solution solve(const std::array<double, 3>& emission, const std::array<double, 3>& albedo,
                  const SolveOptions& options = {}) {
-    std::vector<double> e, rho;
+    std::vector<float> e, rho;
     for (std::size_t i = 0; i < size(); ++i)
       for (int c = 0; c < 3; ++c) {
-        e.push_back(emission[c]);
-        rho.push_back(albedo[c]);
+        e.push_back(static_cast<float>(emission[c]));
+        rho.push_back(static_cast<float>(albedo[c]));
       }
     return solve_radiosity(*exchange, e, rho, area, options);
   }
   double mean(const std::vector<double>& values, int colour) const {
     double sum = 0.0, all = 0.0;
     for (std::size_t i = 0; i < size(); ++i) {
-      sum += area[i] * values[3 * i + colour];
-      all += area[i];
+      sum += double{area[i]} * values[3 * i + colour];
+      all += double{area[i]};
     }
     return sum / all;
   }

@@ -75,6 +75,6 @@ TEST_CASE("a dark scene is solved, and sizes that differ are refused") {
   CHECK(s.end == SolveEnd::converged);
   CHECK(s.applies == 0);
   CHECK(room.mean(s.radiosity, 0) == 0.0);
-  const std::vector<double> few(3, 0.0);
+  const std::vector<float> few(3, 0.0f);
   CHECK_THROWS_AS(solve_radiosity(*room.exchange, few, few, few, {}), std::invalid_argument);
 }

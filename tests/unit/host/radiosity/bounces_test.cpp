@@ -7,13 +7,13 @@ using namespace pointgi;
 namespace {
 
 struct Plates {
-  std::vector<Splat> points{2};
-  std::vector<std::uint32_t> places{3, 1}; ///< in a pool of four
+  std::vector<Splat> pool = std::vector<Splat>(4);
+  std::vector<std::uint32_t> places{3, 1};
   std::vector<float> direct = std::vector<float>(12, 0.0f);
   unsigned passes = 0;
 
   explicit Plates(float albedo) {
-    for (Splat& s : points) {
+    for (Splat& s : pool) {
       s = {};
       s.area = 0.5f;
       for (float& c : s.colour)
@@ -35,7 +35,7 @@ struct Plates {
           }
           return true;
         },
-        {points, places}, {direct, {}}, options);
+        {pool, places}, {direct, {}}, options);
   }
 };
 

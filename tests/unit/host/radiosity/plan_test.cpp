@@ -15,7 +15,7 @@ namespace {
 
 double bound(const std::vector<Splat>& splats, double albedo, double enough = 1e30) {
   const ClusterTree tree = build_clusters(splats, {});
-  return bound_of_exchange(tree, std::vector<double>(3 * splats.size(), albedo), albedo, enough);
+  return bound_of_exchange(tree, std::vector<float>(3 * splats.size(), static_cast<float>(albedo)), albedo, enough);
 }
 
 /// How many questions there were.
@@ -53,7 +53,7 @@ TEST_CASE("the bound of light between surfaces: nothing of a ball, all of a room
   CHECK(bound(plane, 0.5) == std::numeric_limits<double>::infinity());
   // A run that is to end does not wait for it.
   const ClusterTree tree = build_clusters(plane, {});
-  const std::vector<double> radiosity(3 * plane.size(), 0.5);
+  const std::vector<float> radiosity(3 * plane.size(), 0.5f);
   before_ranges([] { throw std::runtime_error("enough"); });
   CHECK_THROWS_WITH(bound_of_exchange(tree, radiosity, 0.5, 1e30), "enough");
   before_ranges(nullptr);

@@ -1,6 +1,7 @@
 /// Memory of stages by closed forms, and passes that are foretold.
 #include "host/photon/photon_map.h"
 #include "host/radiosity/direct.h"
+#include "host/radiosity/directions.h"
 #include "host/stages/device_need.h"
 #include "host/stages/exchange_sample.h"
 #include <catch2/catch.hpp>
@@ -25,6 +26,15 @@ TEST_CASE("hits of directions take four bytes a ray where there is room, and wha
   const DeviceNeed tight = exchange_need("directions", settings, count, hits / 2);
   CHECK(tight.usual < hits / 2);
   CHECK(tight.least == need.least);
+}
+
+TEST_CASE("hits leave the room that the points of a large cloud take besides") {
+  const std::uint64_t left = 11'000'000'000; // half of what a machine of 24 GiB has
+  CHECK(bytes_for_hits(left, 3'000'000) > std::uint64_t{4} * 512 * 3'000'000);
+  CHECK(bytes_for_hits(left, 10'000'000) < bytes_for_hits(left, 3'000'000) - 2'000'000'000);
+  CHECK(bytes_for_hits(left, 30'000'000) == 24u * 30'000'000u);
+  CHECK(bytes_for_hits(100'000'000, 1'000'000) <= 75'000'000 - 32'000'000); // of a device that has no more
+  CHECK(bytes_for_hits(1000, 1'000'000) == 0);
 }
 
 TEST_CASE("pairs take a bit each where they are kept, and gather can do without") {
