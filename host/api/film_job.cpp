@@ -60,8 +60,8 @@ std::string settings_text(const pointgi::Scene& scene, const std::string& integr
       fmt::format("{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {} {} {} {} {}", r.method, r.order,
                   r.vmap_samples, r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap,
                   r.direct_light, r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.share,
-                  r.sampling, r.window, r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility, r.voxels,
-                  r.passes, r.cones, r.anisotropic, r.at);
+                  r.sampling, r.window, r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility,
+                  r.voxels, r.passes, r.cones, r.anisotropic, r.at);
   return fmt::format("{} {} {}; {}; {} {} {} {:a} {} {}", integrator, paths,
                      name_of(scene.camera.backfaces.value_or(Backfaces::shade)), radiosity, c.photons, c.gather_k,
                      c.power, c.max_radius.value_or(0.0), c.feedback, c.indirect);

@@ -10,8 +10,8 @@ namespace pointgi {
 
 class SharedIrradiance {
 public:
-  /// Of the points at `places` of `pool`, which must outlive this. `ways`: of each the harmonic mean of the lengths of its
-  /// rays [unit of the positions]: irradiance changes over that length, and no faster.
+  /// Of the points at `places` of `pool`, which must outlive this. `ways`: of each the harmonic mean of the lengths of
+  /// its rays [unit of the positions]: irradiance changes over that length, and no faster.
   SharedIrradiance(View<Splat> pool, const std::vector<std::uint32_t>& places, std::vector<float> ways);
 
   /// `values` [points x channels]: of each point the mean over itself and its neighbours, weighted by 1 - e /
