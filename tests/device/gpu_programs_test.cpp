@@ -109,6 +109,7 @@ TEST_CASE("the sets of features that a GPU is given hold those of the scene, and
                            (bit(6) ? MATERIAL_TRANSMITS : 0u) | (bit(7) ? MATERIAL_HAS_LOBE : 0u);
         f.gather_k = k;
         f.sky_map = bit(8); // seen without shadow rays, too
+        f.stored_direct = f.shadow_rays;
         if (f.sky_map && f.shadow_rays && !f.environment) continue;
         if (!f.specular() && (bit(6) || bit(7) || k > 0)) continue;
         if (!f.shadow_rays && !f.radiosity) continue;
