@@ -107,7 +107,8 @@ enum class Sight { hidden, open, unknown };
 
 class PointLight {
 public:
-  PointLight(View<Splat> points, const DeviceLighting& lighting) : lighting_(lighting), shafts_(points) {
+  PointLight(View<Splat> points, const DeviceLighting& lighting, const Shafts& shafts)
+      : lighting_(lighting), shafts_(shafts) {
     if (lighting.emitters.empty()) return;
     lamps_ = lamps_of(points, lighting);
     for (const std::uint32_t lamp : lamps_->lamps)
@@ -210,20 +211,42 @@ private:
   }
 
   const DeviceLighting& lighting_;
-  Shafts shafts_;
+  const Shafts& shafts_;
   std::optional<Lamps> lamps_;
   std::vector<Cluster> boxes_;
 };
+
+/// Whether all points that face about as those of the leaf do are dark, within two radii about it.
+template <class IsDark>
+bool is_dark_about(const Shafts& shafts, std::uint32_t leaf, const IsDark& is_dark) {
+  const ClusterTree& tree = shafts.tree();
+  const Cluster discs = shafts.with_discs(leaf);
+  float radius = 0.0f, low[3], high[3];
+  for (std::uint32_t i = discs.first_point; i < discs.first_point + discs.count; ++i)
+    radius = std::max(radius, tree.points[i].radius);
+  for (int k = 0; k < 3; ++k) {
+    low[k] = discs.low[k] - radius; // with_discs() has the first radius
+    high[k] = discs.high[k] + radius;
+  }
+  const Vector axis = vector_of(discs.axis);
+  return shafts.for_each_near(low, high, [&](std::uint32_t i) {
+    const Splat& disc = tree.points[i];
+    for (int k = 0; k < 3; ++k)
+      if (disc.position[k] + disc.radius < low[k] || disc.position[k] - disc.radius > high[k]) return true;
+    constexpr double alike = 0.5;
+    return is_dark(i) || vector_of(disc.normal).dot(axis) < alike;
+  });
+}
 
 } // namespace
 
 ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighting) {
   ShaftLight light{std::vector<float>(3 * points.size), std::vector<std::uint8_t>(points.size), {}, 0};
   if (points.size == 0) return light;
-  const PointLight of(points, lighting);
+  light.shafts = std::make_shared<const Shafts>(points);
+  const PointLight of(points, lighting, *light.shafts);
   if (of.lamps() == 0 || of.lamps() > most_lamps) return light;
   const ClusterTree& tree = of.shafts().tree();
-  light.leaf.resize(points.size);
   std::vector<std::uint32_t> leaves;
   for (std::uint32_t k = 0; k < tree.nodes.size(); ++k)
     if (tree.nodes[k].child_count == 0) leaves.push_back(k);
@@ -234,7 +257,6 @@ ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighti
       const Cluster& leaf = tree.nodes[leaves[l]];
       const bool together = of.is_known(of.shafts().with_discs(leaves[l]), shines);
       for (std::uint32_t i = leaf.first_point; i < leaf.first_point + leaf.count; ++i) {
-        light.leaf[tree.order[i]] = leaves[l];
         if (!together && !of.is_known(of.shafts().disc(i), shines)) continue;
         const std::optional<Vector> sum = of.irradiance(tree.points[i], shines);
         if (!sum) continue;
@@ -250,20 +272,30 @@ ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighti
 }
 
 void add_light_by_rays(View<float> by_rays, ShaftLight& light) {
-  if (light.leaf.empty()) return;
-  const auto is_dark = [&](std::size_t i) {
-    return by_rays[3 * i] == 0.0f && by_rays[3 * i + 1] == 0.0f && by_rays[3 * i + 2] == 0.0f;
-  };
-  const std::uint32_t leaves = 1 + *std::max_element(light.leaf.begin(), light.leaf.end());
-  std::vector<std::uint8_t> dark(leaves, 1);
+  if (light.shafts == nullptr) return;
+  const std::shared_ptr<const Shafts> shafts = std::move(light.shafts);
+  const ClusterTree& tree = shafts->tree();
   for (std::size_t i = 0; i < light.known.size(); ++i)
-    if (light.known[i] == 0 && !is_dark(i)) dark[light.leaf[i]] = 0;
-  for (std::size_t i = 0; i < light.known.size(); ++i) {
-    if (light.known[i] != 0) continue;
-    std::copy_n(by_rays.data + 3 * i, 3, light.irradiance.data() + 3 * i);
-    light.known[i] = dark[light.leaf[i]];
-    light.known_points += light.known[i];
+    if (light.known[i] == 0) std::copy_n(by_rays.data + 3 * i, 3, light.irradiance.data() + 3 * i);
+  const auto is_dark = [&](std::uint32_t point) {
+    const float* h = &light.irradiance[3 * std::size_t{tree.order[point]}];
+    return h[0] == 0.0f && h[1] == 0.0f && h[2] == 0.0f;
+  };
+  std::vector<std::uint32_t> dark;
+  for (std::uint32_t k = 0; k < tree.nodes.size(); ++k) {
+    const Cluster& leaf = tree.nodes[k];
+    if (leaf.child_count != 0) continue;
+    bool unknown = false, all_dark = true;
+    for (std::uint32_t i = leaf.first_point; i < leaf.first_point + leaf.count; ++i) {
+      unknown = unknown || light.known[tree.order[i]] == 0;
+      all_dark = all_dark && is_dark(i);
+    }
+    if (unknown && all_dark && is_dark_about(*shafts, k, is_dark)) dark.push_back(k);
   }
+  for (const std::uint32_t k : dark)
+    for (std::uint32_t i = tree.nodes[k].first_point; i < tree.nodes[k].first_point + tree.nodes[k].count; ++i)
+      light.known[tree.order[i]] = 1;
+  light.known_points = static_cast<std::size_t>(std::count(light.known.begin(), light.known.end(), 1));
 }
 
 } // namespace pointgi

@@ -2,6 +2,8 @@
 /// Light at points that see all of every lamp and [[light]]: by sums instead of shadow rays, without noise (Haines and
 /// Wallace, "Shaft culling for efficient ray-traced radiosity", 1991, decides where; octree/vmap/shafts.h).
 #include "host/scene/lighting.h"
+#include "octree/vmap/shafts.h"
+#include <memory>
 
 namespace pointgi {
 
@@ -10,12 +12,13 @@ struct ShaftLight {
                                  ///< is any, where it is not known
   std::vector<std::uint8_t> known; ///< [points]: 1 where it is: each lamp and [[light]] shines on all of the disc, or
                                    ///< on none of it
-  std::vector<std::uint32_t> leaf; ///< [points]: of the points that lie and face together; empty: nothing was asked
+  std::shared_ptr<const Shafts> shafts; ///< for add_light_by_rays(), which lets go of it; null: nothing was asked
   std::size_t known_points = 0;
 };
 
-/// Where rays from all points of a leaf that know nothing have found no light, they know that: `by_rays` [points x 3],
-/// of every lamp and [[light]]. It becomes their irradiance otherwise, and they go on knowing nothing.
+/// `by_rays` [points x 3]: of every lamp and [[light]], an estimate for the points that know nothing, whose irradiance
+/// it becomes. Where it is none, for all points of a leaf and for all that face alike within two radii about it, they
+/// know that: no edge of a shadow runs over their discs.
 void add_light_by_rays(View<float> by_rays, ShaftLight& light);
 
 /// Of every [[light]] and all emitting splats together, not of the sky. `points`: the pool, discs. Nothing is known

@@ -2,6 +2,7 @@
 #include "host/render/band_passes.h"
 #include "host/render/resolve.h"
 #include <algorithm>
+#include <future>
 
 namespace pointgi {
 
@@ -13,6 +14,12 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   const pg_uint samples = request.lighting.params.samples;
   RenderTotals totals;
   totals.of_object.resize(request.first_ids.size);
+  std::future<void> taken; // the band before, while the device is busy with the next
+  const auto finish_taking = [&] {
+    if (!taken.valid()) return;
+    taken.get();
+    totals.rows_done = std::min(height, totals.rows_done + band_rows);
+  };
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
     Band band = empty_band(request, row, rows);
@@ -23,11 +30,12 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
     passes.run(
         {row, rows, 0, samples}, films, totals,
         [&](double share) { progress((row + rows * share) / static_cast<double>(height)); }, stop);
+    finish_taking();
     if (totals.interrupted) return totals;
     totals.lit = totals.lit || is_lit(band);
-    take(band);
-    totals.rows_done = row + rows;
+    taken = std::async(std::launch::async, [&take, done = std::move(band)] { take(done); });
   }
+  finish_taking();
   return totals;
 }
 

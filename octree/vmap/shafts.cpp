@@ -225,6 +225,25 @@ Cluster Shafts::disc(std::uint32_t point) const {
   return cluster;
 }
 
+bool Shafts::for_each_near(const float low[3], const float high[3],
+                           const std::function<bool(std::uint32_t)>& look) const {
+  std::vector<std::uint32_t> waiting{0};
+  while (!waiting.empty()) {
+    const std::uint32_t at = waiting.back();
+    const Cluster& node = tree_.nodes[at];
+    waiting.pop_back();
+    bool apart = false;
+    for (int k = 0; k < 3; ++k)
+      apart = apart || boxes_[at].low[k] > high[k] || boxes_[at].high[k] < low[k];
+    if (apart) continue;
+    for (std::uint32_t k = 0; k < node.child_count; ++k)
+      waiting.push_back(node.first_child + k);
+    for (std::uint32_t i = node.first_point; node.child_count == 0 && i < node.first_point + node.count; ++i)
+      if (!look(i)) return false;
+  }
+  return true;
+}
+
 bool Shafts::is_open(const Cluster& from, const Cluster& light, bool has_surface) const {
   return for_each_met(Shaft(from, light), [&](const Splat& splat) {
     return belongs_to_disc(from, splat) || (has_surface && may_belong_to(light, splat));

@@ -3,6 +3,7 @@
 /// radiosity", 1991): the hull of both clusters' boxes, less what lies behind either's points, against boxes around
 /// all splats.
 #include "octree/vmap/cluster_tree.h"
+#include <functional>
 
 namespace pointgi {
 
@@ -30,6 +31,10 @@ public:
   Cluster with_discs(std::uint32_t k) const;
   /// The same of one point alone, in the tree's order.
   Cluster disc(std::uint32_t point) const;
+
+  /// Calls look(point) for the points whose leaf reaches into the box, in the tree's order, until it returns false;
+  /// false then.
+  bool for_each_near(const float low[3], const float high[3], const std::function<bool(std::uint32_t)>& look) const;
 
   /// Whether no ray from a place on the discs of `from` to a place of `light` meets anything but discs that belong to
   /// the surfaces at its ends (kernels/surface/own_surface.cl). `from`: with_discs() or disc(); only of one disc it is

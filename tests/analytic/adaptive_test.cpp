@@ -10,8 +10,8 @@ namespace {
 constexpr int seeds = 24;
 
 /// A box on a floor below a lamp and an even sky: edges, borders of albedo, penumbra, umbra and plain floor.
-std::string yard(int spp, const std::string& more) {
-  return head("0.6, 1.4, 2.0", "0.0, 0.15, 0.0", 40.0, spp, "[24, 20]") + more + environment(0.3) +
+std::string yard(int spp) {
+  return head("0.6, 1.4, 2.0", "0.0, 0.15, 0.0", 40.0, spp, "[24, 20]") + environment(0.3) +
          material("floor", "diffuse", "albedo = [0.7, 0.6, 0.2]") +
          material("dark", "diffuse", "albedo = [0.1, 0.2, 0.5]") + lamp("lamp", 20.0) +
          quad("-1.0, 0.0, -1.0", "0.0, 0.0, 2.0", "1.2, 0.0, 0.0", "floor", 0.05) +
@@ -25,11 +25,14 @@ struct Means {
   std::vector<double> mean, variance;
 };
 
-Means means_of(const std::string& scene) {
+Means means_of(const std::string& scene, const char* adaptive) {
   Means m;
   std::vector<double> squares;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const Picture picture = render_text(scene, [&](RenderOptions& o) { o.seed = static_cast<unsigned>(seed); });
+    const Picture picture = render_text(scene, [&](RenderOptions& o) {
+      o.seed = static_cast<unsigned>(seed);
+      o.overrides.push_back(std::string("render.adaptive=") + adaptive);
+    });
     const std::vector<float>& g = picture.channels.at("G");
     m.mean.resize(g.size()), squares.resize(g.size());
     for (std::size_t i = 0; i < g.size(); ++i)
@@ -45,7 +48,7 @@ Means means_of(const std::string& scene) {
 TEST_CASE("few samples of pixels in which nothing changes do not bias the mean") {
   const int spp = GENERATE(16, 32, 40);
   const std::string rest = "[radiosity]\nmethod = \"none\"\n";
-  const Means few = means_of(yard(spp, "") + rest), all = means_of(yard(spp, "adaptive = false\n") + rest);
+  const Means few = means_of(yard(spp) + rest, "true"), all = means_of(yard(spp) + rest, "false");
   double sum = 0.0, squares = 0.0, off = 0.0, level = 0.0;
   std::size_t noisy = 0;
   for (std::size_t i = 0; i < few.mean.size(); ++i) {
@@ -65,14 +68,14 @@ TEST_CASE("few samples of pixels in which nothing changes do not bias the mean")
 }
 
 TEST_CASE("light that shafts and directions tell is that of the path tracer") {
-  const std::string scene = yard(256, "") + "[radiosity]\nmethod = \"directions\"\ndirections = 256\n";
+  const std::string scene = yard(256) + "[radiosity]\nmethod = \"directions\"\ndirections = 256\n";
   const Picture picture = render_text(scene), truth = trace(scene, "", 1024);
   // Noise of both: 0.2 % of the mean; light that points interpolate: 0.5 %.
   for (const char* channel : {"R", "G", "B"}) {
     CAPTURE(channel);
     CHECK(mean(picture, channel) == Approx(mean(truth, channel)).epsilon(0.01));
   }
-  const Picture direct = trace(yard(256, ""), "LE,LDE", 1024);
+  const Picture direct = trace(yard(256), "LE,LDE", 1024);
   // Direct light, the sky's from the points, alone.
   CHECK(mean(picture, "Direct.G") == Approx(mean(direct, "G")).epsilon(0.01));
 }

@@ -17,7 +17,7 @@ api::Scene corner() {
   return api::Scene::from_text(
       std::string(small_scene()) +
       "[[shape]]\ntype = \"quad\"\ncorner = [-1.5, -0.9, -1.5]\nedge_u = [0.0, 0.0, 3.0]\nedge_v = [3.0, 0.0, 0.0]\n"
-      "spacing = 0.1\nmaterial = \"grey\"\n");
+      "spacing = 0.1\nmaterial = \"grey\"\n[radiosity]\nmethod = \"fmm\"\n");
 }
 
 std::size_t ran(const api::Context& context, const std::string& stage) {

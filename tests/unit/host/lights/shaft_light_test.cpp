@@ -123,28 +123,33 @@ TEST_CASE("lights without a size and the sun light points by their formula, behi
   CHECK(known > hall.floor * 3 / 4);
 }
 
-TEST_CASE("where rays find no light from a whole leaf its points know that, and elsewhere nothing") {
-  Hall hall(true);
+TEST_CASE("where rays find no light about a whole leaf its points know that, and nowhere near light") {
+  const Hall hall(true);
   ShaftLight light = light_through_shafts(hall.splats, hall.lighting);
   const std::vector<std::uint8_t> before = light.known;
-  std::vector<float> by_rays(3 * hall.splats.size(), 0.0f);
-  const std::uint32_t lit_leaf = light.leaf[0];
+  const auto off_middle = [&](std::size_t i) {
+    return std::max(std::fabs(hall.splats[i].position[0] - 0.5f), std::fabs(hall.splats[i].position[2] - 0.5f));
+  };
+  // Of the unknown points under the plate the innermost are dark, as by rays.
+  const auto is_dark = [&](std::size_t i) { return i < hall.floor && off_middle(i) < 0.1f; };
+  std::vector<float> by_rays(3 * hall.splats.size(), 0.5f);
   for (std::size_t i = 0; i < hall.splats.size(); ++i)
-    if (light.leaf[i] == lit_leaf) by_rays[3 * i + 1] = 0.5f;
-  light.known[0] = 0; // one that rays have lit
-  light.known_points -= 1;
+    if (is_dark(i)) std::fill_n(&by_rays[3 * i], 3, 0.0f);
   add_light_by_rays(by_rays, light);
-  CHECK(light.known[0] == 0);
-  CHECK(light.irradiance[1] == 0.5f);
-  std::size_t count = 0;
+  CHECK(light.shafts == nullptr);
+  std::size_t count = 0, now_dark = 0;
   for (std::size_t i = 0; i < hall.splats.size(); ++i) {
     count += light.known[i];
-    if (before[i] == 0 && light.leaf[i] != lit_leaf) {
-      CHECK(light.known[i] == 1);
-      CHECK(light.irradiance[3 * i] == 0.0f);
-    }
+    CHECK(light.known[i] >= before[i]);
+    if (before[i] != 0) continue;
+    CHECK(light.irradiance[3 * i] == by_rays[3 * i]);
+    if (light.known[i] == 0) continue;
+    ++now_dark;
+    CHECK(is_dark(i));
+    CHECK(off_middle(i) < 0.1f - 2.0f * hall.splats[i].radius); // none whose disc, or neighbour, light may reach
   }
   CHECK(count == light.known_points);
+  CHECK(now_dark > 0);
 }
 
 TEST_CASE("nothing is known of more lamps than shafts are worth, nor without splats") {
