@@ -19,8 +19,15 @@ constexpr float flat_lamp = 0.05f;
 /// Discs of a lamp count as one where they are seen under this angle: a cosine and a distance squared are wrong by its
 /// square at most.
 constexpr double far_discs = 0.04;
-/// A disc that is nearer than this many of its radii is no point of light.
+/// A disc of a lamp that is nearer than this many of its radii is no point of light.
 constexpr double near_disc = 6.0;
+/// Lamps nearer than this many radii of a point's disc change over it: between points cos / d² is interpolated, with an
+/// error of about (radius / d)², here 1e-3.
+constexpr double far_lamp = 32.0;
+/// Where neighbours' normals differ by more, so does the cosine between them: an error of half the square, 5e-3 at most.
+constexpr double flat_cosine = 0.995;
+/// Those that differ by more than this are of another surface (kernels/surface/blend.cl).
+constexpr double same_surface = 0.5;
 /// The longest way in the root cube.
 constexpr double across_cube = 1.75;
 
@@ -156,10 +163,23 @@ public:
   }
 
 private:
+  /// Whether a box is far enough for its light to change little over the discs.
+  bool is_far(const Cluster& from, const Cluster& box) const {
+    double apart2 = 0.0, radius = 0.0;
+    for (std::uint32_t i = from.first_point; i < from.first_point + from.count; ++i)
+      radius = std::max(radius, double{shafts_.tree().points[i].radius});
+    for (int k = 0; k < 3; ++k) {
+      const double apart = std::max({0.0, double{box.low[k]} - from.high[k], double{from.low[k]} - box.high[k]});
+      apart2 += apart * apart;
+    }
+    return apart2 > far_lamp * far_lamp * radius * radius;
+  }
+
   Sight of_lamp(const Cluster& from, const Cluster& lamp) const {
     const Facing there = facing(from, lamp), back = facing(lamp, from);
     if (there == Facing::none || back == Facing::none) return Sight::hidden;
-    if (there != Facing::all || back != Facing::all || lamp.cone >= flat_lamp) return Sight::unknown;
+    if (there != Facing::all || back != Facing::all || lamp.cone >= flat_lamp || !is_far(from, lamp))
+      return Sight::unknown;
     return shafts_.is_open(from, lamp, true) ? Sight::open : Sight::unknown;
   }
 
@@ -169,7 +189,7 @@ private:
     if (light.type == LIGHT_POINT) {
       const Facing there = facing(from, source);
       if (there == Facing::none) return Sight::hidden;
-      if (there != Facing::all) return Sight::unknown;
+      if (there != Facing::all || !is_far(from, source)) return Sight::unknown;
     } else {
       const double height = std::asin(std::clamp(vector_of(from.axis).dot(vector_of(light.vector)), -1.0, 1.0));
       const double spread = double{from.cone} + std::asin(std::sqrt(double{light.sine2})) + 1e-4;
@@ -216,6 +236,20 @@ private:
   std::vector<Cluster> boxes_;
 };
 
+/// Whether the discs that overlap with a point's, of its surface, face as it does.
+bool is_smooth_at(const Shafts& shafts, std::uint32_t point) {
+  const ClusterTree& tree = shafts.tree();
+  const Cluster disc = shafts.disc(point);
+  const Splat& own = tree.points[point];
+  return shafts.for_each_near(disc.low, disc.high, [&](std::uint32_t i) {
+    const Splat& other = tree.points[i];
+    const double reach = double{own.radius} + other.radius;
+    if ((vector_of(other.position) - vector_of(own.position)).squaredNorm() > reach * reach) return true;
+    const double cosine = vector_of(own.normal).dot(vector_of(other.normal));
+    return cosine > flat_cosine || cosine < same_surface;
+  });
+}
+
 /// Whether all points that face about as those of the leaf do are dark, within two radii about it.
 template <class IsDark>
 bool is_dark_about(const Shafts& shafts, std::uint32_t leaf, const IsDark& is_dark) {
@@ -259,7 +293,7 @@ ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighti
       for (std::uint32_t i = leaf.first_point; i < leaf.first_point + leaf.count; ++i) {
         if (!together && !of.is_known(of.shafts().disc(i), shines)) continue;
         const std::optional<Vector> sum = of.irradiance(tree.points[i], shines);
-        if (!sum) continue;
+        if (!sum || (!sum->isZero() && leaf.cone > 0.0f && !is_smooth_at(of.shafts(), i))) continue;
         const std::uint32_t at = tree.order[i];
         light.known[at] = 1;
         for (int c = 0; c < 3; ++c)
