@@ -21,10 +21,11 @@ constexpr float flat_lamp = 0.05f;
 constexpr double far_discs = 0.04;
 /// A disc of a lamp that is nearer than this many of its radii is no point of light.
 constexpr double near_disc = 6.0;
-/// Lamps nearer than this many radii of a point's disc change over it: between points cos / d² is interpolated, with an
-/// error of about (radius / d)², here 1e-3.
+/// Lamps nearer than this many radii of a point's disc change over it more than by a gradient: the error of cos / d² is
+/// about (radius / d)², here 1e-3.
 constexpr double far_lamp = 32.0;
-/// Where neighbours' normals differ by more, so does the cosine between them: an error of half the square, 5e-3 at most.
+/// Where neighbours' normals differ by more, so does the cosine between them: an error of half the square, 5e-3 at
+/// most.
 constexpr double flat_cosine = 0.995;
 /// Those that differ by more than this are of another surface (kernels/surface/blend.cl).
 constexpr double same_surface = 0.5;
@@ -162,6 +163,25 @@ public:
     return sum;
   }
 
+  /// ShaftLight::change, by differences over the disc. `here`: irradiance() at its middle.
+  Vector change(const Splat& at, const std::vector<std::uint8_t>& shines, const Vector& here) const {
+    Vector gradient = Vector::Zero();
+    if (!(here.sum() > 0.0)) return gradient;
+    const Vector normal = vector_of(at.normal), tangent = normal.unitOrthogonal();
+    for (const Vector& along : {tangent, Vector(normal.cross(tangent))}) {
+      double ends[2];
+      for (int side = 0; side < 2; ++side) {
+        Splat moved = at;
+        for (int k = 0; k < 3; ++k)
+          moved.position[k] += static_cast<float>((side == 0 ? -1.0 : 1.0) * at.radius * along[k]);
+        const std::optional<Vector> there = irradiance(moved, shines);
+        ends[side] = there ? there->sum() : here.sum();
+      }
+      gradient += along * ((ends[1] - ends[0]) / (2.0 * at.radius * here.sum()));
+    }
+    return gradient;
+  }
+
 private:
   /// Whether a box is far enough for its light to change little over the discs.
   bool is_far(const Cluster& from, const Cluster& box) const {
@@ -275,7 +295,11 @@ bool is_dark_about(const Shafts& shafts, std::uint32_t leaf, const IsDark& is_da
 } // namespace
 
 ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighting) {
-  ShaftLight light{std::vector<float>(3 * points.size), std::vector<std::uint8_t>(points.size), {}, 0};
+  ShaftLight light{std::vector<float>(3 * points.size),
+                   std::vector<float>(3 * points.size),
+                   std::vector<std::uint8_t>(points.size),
+                   {},
+                   0};
   if (points.size == 0) return light;
   light.shafts = std::make_shared<const Shafts>(points);
   const PointLight of(points, lighting, *light.shafts);
@@ -294,10 +318,13 @@ ShaftLight light_through_shafts(View<Splat> points, const DeviceLighting& lighti
         if (!together && !of.is_known(of.shafts().disc(i), shines)) continue;
         const std::optional<Vector> sum = of.irradiance(tree.points[i], shines);
         if (!sum || (!sum->isZero() && leaf.cone > 0.0f && !is_smooth_at(of.shafts(), i))) continue;
+        const Vector change = of.change(tree.points[i], shines, *sum);
         const std::uint32_t at = tree.order[i];
         light.known[at] = 1;
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; ++c) {
           light.irradiance[3 * at + static_cast<std::size_t>(c)] = static_cast<float>((*sum)[c]);
+          light.change[3 * at + static_cast<std::size_t>(c)] = static_cast<float>(change[c]);
+        }
       }
     }
   });

@@ -10,6 +10,8 @@ namespace pointgi {
 struct ShaftLight {
   std::vector<float> irradiance; ///< [points x 3], W/m² divided by the lighting's scale; an estimate by rays, if there
                                  ///< is any, where it is not known
+  std::vector<float> change; ///< [points x 3]: gradient of the irradiance over itself along the disc, of all colours
+                             ///< together [1 / root cube]; 0 where it is not known
   std::vector<std::uint8_t> known; ///< [points]: 1 where it is: each lamp and [[light]] shines on all of the disc, or
                                    ///< on none of it
   std::shared_ptr<const Shafts> shafts; ///< for add_light_by_rays(), which lets go of it; null: nothing was asked

@@ -50,7 +50,7 @@ TileRenderer::TileRenderer(Session& session, const DevicePools& pools, const Dev
   // Programs of other devices are few, and all take it.
   features.stored_direct = !paths && shadow_rays && (stored_direct != nullptr || !session.info().is_cpu);
   if (features.stored_direct && stored_direct == nullptr) {
-    nothing_stored_ = session.allocate<cl_float4>(std::max<std::size_t>(1, pool_points));
+    nothing_stored_ = session.allocate<cl_float4>(2 * std::max<std::size_t>(1, pool_points));
     session.fill(nothing_stored_, cl_float4{}, nothing_stored_.size);
     params_.sky_at_points = 0;
   }

@@ -383,13 +383,19 @@ std::optional<StoredDirect> upload_direct(Session& session, const IndirectReques
   const bool some_known = request.shafts != nullptr && request.shafts->known_points > 0;
   if (direct_light_by_radiosity(request.scene) || request.by_paths || (!some_known && light.sky.empty()))
     return std::nullopt;
-  std::vector<cl_float4> texels(request.points.size);
-  for (std::size_t i = 0; i < texels.size(); ++i) {
+  std::vector<cl_float4> texels(2 * request.points.size);
+  for (std::size_t i = 0; i < request.points.size; ++i) {
     const bool known = some_known && request.shafts->known[i] != 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      texels[i].s[c] =
-          (known ? request.shafts->irradiance[3 * i + c] : 0.0f) + (light.sky.empty() ? 0.0f : light.sky[3 * i + c]);
-    texels[i].s[3] = known ? 1.0f : 0.0f;
+    float of_sources = 0.0f, all = 0.0f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float sources = known ? request.shafts->irradiance[3 * i + c] : 0.0f;
+      texels[2 * i].s[c] = sources + (light.sky.empty() ? 0.0f : light.sky[3 * i + c]);
+      of_sources += sources;
+      all += texels[2 * i].s[c];
+    }
+    texels[2 * i].s[3] = known ? 1.0f : 0.0f;
+    for (std::size_t c = 0; c < 3 && all > 0.0f; ++c)
+      texels[2 * i + 1].s[c] = known ? request.shafts->change[3 * i + c] * (of_sources / all) : 0.0f;
   }
   return StoredDirect{session.upload(texels), !light.sky.empty()};
 }

@@ -84,8 +84,9 @@ static inline uint pool_component(uint4 texel, uint i) {
 #endif
 
 #ifdef HAS_STORED_DIRECT
-/* And direct light that is known at the points: direct_pool[i].xyz is irradiance [W/m2, scaled as RenderParams], .w the share of
- * the light of [[light]]s and emitting splats that it holds; all of the sky's where RenderParams::sky_at_points. */
+/* And direct light that is known at the points: direct_pool[2 i].xyz is irradiance [W/m2, scaled as RenderParams], .w the share of
+ * the light of [[light]]s and emitting splats that it holds; all of the sky's where RenderParams::sky_at_points. At x it is
+ * 1 + direct_pool[2 i + 1].xyz . (x - x_i) times that. */
 #define STORED_ARGS LIT_ARGS, direct_pool
 #define STORED_PARAMS LIT_PARAMS, const __global float4 *restrict direct_pool
 #else

@@ -22,7 +22,7 @@ static inline bool needs_no_rays(POOL_PARAMS, Lights lights, uint splat) {
   const float3 sky = load3_constant(lights.params->environment);
   const bool has_sky = lights.params->sky_at_points == 0u && (sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f);
   const bool has_sources = lights.params->light_sources + lights.params->emitters > 0u;
-  return !has_sky && (!has_sources || direct_pool[splat].w > ALL_STORED);
+  return !has_sky && (!has_sources || direct_pool[2u * splat].w > ALL_STORED);
 #else
   return false;
 #endif

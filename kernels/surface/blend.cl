@@ -109,7 +109,10 @@ static inline void blend_add(POOL_PARAMS, Blend* b, Ray ray, uint splat, Meeting
   b->irradiance += of_material * irradiance_pool[splat].xyz;
 #endif
 #ifdef HAS_STORED_DIRECT
-  b->direct += of_material * direct_pool[splat];
+  const float4 known = direct_pool[2u * splat];
+  const float3 off = fma((float3)(m.t), ray.direction, ray.origin - pool_point_texel(POINT_TEXELS * splat).xyz);
+  const float change = fmax(1.0f + dot3(direct_pool[2u * splat + 1u].xyz, off), 0.0f);
+  b->direct += of_material * (float4)(change * known.xyz, known.w);
 #endif
 #ifdef HAS_CAUSTICS
   b->caustic += of_material * caustic_pool[splat];

@@ -73,10 +73,12 @@ TEST_CASE("the picture is linear in the light's power, from 1e-20 to 1e20") {
 }
 
 TEST_CASE("form, branching, capacity and depth do not change the picture, storage and groups not a bit of it") {
-  const auto with = [](const std::vector<std::string>& settings) {
-    return render_text(ball_scene(1.0), [&](RenderOptions& o) { o.overrides = settings; });
+  // By "fmm": which directions a point draws depends on its place in the order.
+  const std::string scene = ball_scene(1.0) + "[radiosity]\nmethod = \"fmm\"\n";
+  const auto with = [&](const std::vector<std::string>& settings) {
+    return render_text(scene, [&](RenderOptions& o) { o.overrides = settings; });
   };
-  const Picture truth = render_text(ball_scene(1.0)), step = with({"traversal.form=step"});
+  const Picture truth = render_text(scene), step = with({"traversal.form=step"});
   for (const char* storage : {"traversal.storage=image1d_buffer", "traversal.storage=image2d"})
     CHECK(with({storage}).channels.at("R") == step.channels.at("R"));
   for (const char* form : {"step", "wide"})
@@ -93,14 +95,16 @@ TEST_CASE("form, branching, capacity and depth do not change the picture, storag
         CHECK(in_groups(group).channels == whole.channels);
       }
     }
-  // Another tree adds the weights of blended splats in another order: rounding.
+  // Another tree adds the weights of blended splats in another order: rounding. Of one whose points stand in another
+  // order other points may know their light (host/lights/shaft_light.h): as much as light over a disc is off its
+  // gradient.
   for (const char* setting :
        {"traversal.form=step", "traversal.form=wide", "traversal.lanes=16", "octree.branching=4",
         "octree.leaf_capacity=4", "octree.max_depth=0", "octree.max_depth=1", "octree.max_depth=5"}) {
     CAPTURE(setting);
-    CHECK(mean_difference(with({setting}), truth) < 1e-4);
+    CHECK(mean_difference(with({setting}), truth) < 5e-4);
     if (std::string(setting).find("octree.") == 0)
-      CHECK(mean_difference(with({setting, "traversal.form=step"}), truth) < 1e-4);
+      CHECK(mean_difference(with({setting, "traversal.form=step"}), truth) < 5e-4);
   }
 }
 
@@ -156,8 +160,9 @@ TEST_CASE("ten thousand lights are as bright as their sum") {
     lights += "[[light]]\ntype = \"point\"\nposition = [" + number(0.7 + 1e-9 * i) +
               ", 1.9, 0.8]\npower_w = [0.003, 0.003, 0.003]\n";
   const Picture picture = render_text(ball_scene(1.0, 0.0, 0.0) + lights);
-  // All in one place: what one light of 30 W gives, whichever of them a sample draws.
-  CHECK(mean_difference(picture, render_text(ball_scene(1.0))) < 1e-3);
+  // All in one place: what one light of 30 W gives, whichever of them a sample draws. The one needs no shadow rays, and
+  // over a disc follows its gradient (host/lights/shaft_light.h): 2e-3.
+  CHECK(mean_difference(picture, render_text(ball_scene(1.0))) < 3e-3);
 }
 
 namespace {
