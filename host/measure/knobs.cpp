@@ -145,7 +145,7 @@ const std::vector<Row>& rows() {
        Needs::exchange,
        falls,
        "Shadows are as sharp as pixels and no longer as points.",
-       {"radiosity", "shadow_rays"},
+       {"radiosity", "auto"},
        [](const Scene& s) { return s.radiosity.direct_light; }},
       {"caustics.photons",
        "",

@@ -179,7 +179,8 @@ struct RadiositySettings {
   int cones = 9;                  ///< of a point
   bool anisotropic = true;        ///< a voxel keeps its light an axis direction
   std::string at = "points";      ///< "pixels": cones of the picture's pixels, too, instead of light between points
-  std::string direct_light = "shadow_rays"; ///< "radiosity": the thesis' way, no shadow rays at pixels (method.md §6)
+  std::string direct_light = "auto"; ///< shadow rays at pixels where points do not know it; "shadow_rays": everywhere;
+                                     ///< "radiosity": the thesis' way, none (method.md §6)
   std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs
   std::vector<std::string> notes;   ///< what the log should say of the keys: those that the method does not read
   std::optional<SourcePlace> place; ///< set when the file has the section

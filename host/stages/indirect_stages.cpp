@@ -167,7 +167,7 @@ void require_possible_radiosity(const Scene& scene) {
     throw Error(ErrorKind::input,
                 scene.radiosity.place->text() +
                     ": [radiosity] direct_light = \"radiosity\" wants a method that exchanges light, but method is "
-                    "\"none\"; choose another method, or \"shadow_rays\"");
+                    "\"none\"; choose another method, or \"auto\"");
 }
 
 std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceLighting& lighting, View<Splat> points,
@@ -357,7 +357,9 @@ std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& po
   if (request.by_paths) return skip("the path tracer makes the picture");
   if (lighting.light_sources.empty() && lighting.emitters.empty())
     return skip("the scene has no lamp and no [[light]]");
-  if (direct_light_by_radiosity(request.scene)) return skip("radiosity.direct_light = \"radiosity\"");
+  if (request.scene.radiosity.direct_light != "auto")
+    return skip(direct_light_by_radiosity(request.scene) ? "radiosity.direct_light = \"radiosity\""
+                                                         : "radiosity.direct_light = \"shadow_rays\"");
   if (request.variant.patches) return skip("patches of the surface stick out of shafts");
   stages.start("shafts");
   const StageWatch watch(session);
@@ -381,7 +383,7 @@ std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& po
 std::optional<StoredDirect> upload_direct(Session& session, const IndirectRequest& request,
                                           const IndirectLight& light) {
   const bool some_known = request.shafts != nullptr && request.shafts->known_points > 0;
-  if (direct_light_by_radiosity(request.scene) || request.by_paths || (!some_known && light.sky.empty()))
+  if (request.scene.radiosity.direct_light != "auto" || request.by_paths || (!some_known && light.sky.empty()))
     return std::nullopt;
   std::vector<cl_float4> texels(2 * request.points.size);
   for (std::size_t i = 0; i < request.points.size; ++i) {

@@ -106,7 +106,11 @@ TEST_CASE("classes of paths: each bounce in a closed sphere brings rho times the
 
 TEST_CASE("direct light alone is the renderer's own picture") {
   const std::string scene = room();
-  const Picture direct = render_text(scene + "[radiosity]\nmethod = \"none\"\n"), paths = trace(scene, "LE,LDE");
+  const Picture direct = render_text(scene + "[radiosity]\nmethod = \"none\"\n",
+                                     [](RenderOptions&o) {
+                                       o.overrides = {"radiosity.direct_light=shadow_rays", "render.adaptive=false"};
+                                     }),
+                paths = trace(scene, "LE,LDE");
   for (const char* channel : {"R", "G", "B", "Z", "N.X", "Albedo.R", "Variance.B"}) {
     CAPTURE(channel);
     CHECK(paths.channels.at(channel) == direct.channels.at(channel)); // the same samples: bit-identical

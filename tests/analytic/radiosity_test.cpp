@@ -171,15 +171,17 @@ TEST_CASE("radiosity runs where something shines, is kept, and gives the same bi
   const TemporaryFolder folder;
   const std::string scene = folder.write("room.toml", with_radiosity(lit_sphere(0.5, 0.15)));
   const std::string cache = "POINTGI_CACHE_DIR=" + folder.file("cache");
-  const Run first = run_program("render " + scene + " --threads 1 -o " + folder.file("a.exr"), cache);
+  const Run first =
+      run_program("render " + scene + " --set radiosity.method=fmm --threads 1 -o " + folder.file("a.exr"), cache);
   REQUIRE(first.code == 0);
   CHECK_THAT(first.err, Catch::Contains("radiosity: ") && !Catch::Contains("kept from an earlier run"));
-  const Run second = run_program("render " + scene + " --threads 2 -o " + folder.file("b.exr"), cache);
+  const Run second =
+      run_program("render " + scene + " --set radiosity.method=fmm --threads 2 -o " + folder.file("b.exr"), cache);
   REQUIRE(second.code == 0);
   CHECK_THAT(second.err, Catch::Contains("V-map: kept from an earlier run"));
   CHECK(read_exr(folder.file("a.exr")).channels == read_exr(folder.file("b.exr")).channels);
   // Made again by two threads, not kept.
-  const Run anew = run_program("render " + scene + " --threads 2 -o " + folder.file("d.exr"),
+  const Run anew = run_program("render " + scene + " --set radiosity.method=fmm --threads 2 -o " + folder.file("d.exr"),
                                "POINTGI_CACHE_DIR=" + folder.file("another_cache"));
   REQUIRE(anew.code == 0);
   CHECK_THAT(anew.err, !Catch::Contains("kept from an earlier run"));

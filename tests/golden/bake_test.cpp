@@ -29,7 +29,7 @@ TEST_CASE("bake writes a lit cloud that the program reads again, names it, and s
     if (stage["ran"] == true) ran.push_back(stage["name"]);
     if (stage["name"] == "render") CHECK_THAT(stage["reason"].get<std::string>(), Contains("no camera"));
   }
-  CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "bake"});
+  CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "shafts", "vmap", "fmm", "bake"});
   CloudReport report;
   const PointCloud cloud = read_ply(out, {}, report);
   CHECK(cloud.size() == stats["scene"]["points"]);

@@ -42,7 +42,7 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
   CHECK(stats["scene"]["points"] > 1000);
   CHECK(stats["render"]["eye_rays"] == 40 * 30 * 4);
   const auto ran = names_of(stats["stages"], true);
-  CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "render", "image"});
+  CHECK(ran == std::vector<std::string>{"scene", "cloud", "octree", "shafts", "render", "image"});
   CHECK(names_of(stats["stages"], false) == std::vector<std::string>{"vmap", "fmm", "normals", "photon"});
   std::size_t stages = 0, launches = 0;
   double stages_end = 0.0;
@@ -53,11 +53,13 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
     if (event["cat"] == "stage") stages_end = event["ts"].get<double>() + event["dur"].get<double>();
     if (event["cat"] != "kernel") continue;
     launches += 1;
-    CHECK((event["name"] == "trace_eye_rays" || event["name"] == "shade_pixels"));
+    CHECK((event["name"] == "trace_eye_rays" || event["name"] == "shade_pixels" ||
+           event["name"] == "direct_irradiance_of_points"));
   }
   CHECK(stages == ran.size());
   CHECK(launches == stats["kernels"]["trace_eye_rays"]["launches"].get<std::size_t>() +
-                        stats["kernels"]["shade_pixels"]["launches"].get<std::size_t>());
+                        stats["kernels"]["shade_pixels"]["launches"].get<std::size_t>() +
+                        stats["kernels"]["direct_irradiance_of_points"]["launches"].get<std::size_t>());
   CHECK(stats["render"]["eye_mrays_per_s"] > 0.0);
   for (const auto& event : trace["traceEvents"]) // within the run, on its own clock
     if (event["ph"] == "X") CHECK((event["ts"] >= 0.0 && event["ts"] <= stages_end));
@@ -99,9 +101,9 @@ TEST_CASE("a mirror adds the stages normals and photon, and the channels of thei
     return json_of(folder.file("s.json"));
   };
   const auto whole = stats_of(" --set caustics.photons=2000");
-  CHECK(names_of(whole["stages"], true) == std::vector<std::string>{"scene", "cloud", "octree", "plan", "vmap", "fmm",
-                                                                    "normals", "photon", "photon", "render",
-                                                                    "image"}); // sent, then what they bring to points
+  CHECK(names_of(whole["stages"], true) ==
+        std::vector<std::string>{"scene", "cloud", "octree", "shafts", "plan", "vmap", "fmm", "normals", "photon",
+                                 "photon", "render", "image"}); // sent, then what they bring to points
   CHECK(whole["photons"]["stored"] > 0);
   CHECK(whole["photons"]["kept"] == whole["photons"]["stored"]);
   for (const char* channel : {"Diffuse.G", "Specular.G", "Caustic.G"})
@@ -217,11 +219,11 @@ TEST_CASE("a second start builds no kernel, and a damaged cache is built anew") 
   const auto [second, kept] = start();
   CHECK(second["compiled"] == 0);
   if (first["kept_by_driver"] == 0) {
-    CHECK(first["compiled"] == 2);
-    CHECK(second["from_cache"] == 2);
+    CHECK(first["compiled"] == 3); // of the shafts' rays, the eye's and the picture
+    CHECK(second["from_cache"] == 3);
   } else { // PoCL, which writes each kernel that it compiles
-    CHECK(first["kept_by_driver"] == 2);
-    CHECK(compiled.size() >= 2);
+    CHECK(first["kept_by_driver"] == 3);
+    CHECK(compiled.size() >= 3);
     CHECK(kept == compiled);
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.file("ours")))

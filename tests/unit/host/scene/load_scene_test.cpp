@@ -304,7 +304,7 @@ TEST_CASE("what a scene leaves out has the documented default", "[scene]") {
   CHECK(scene.radiosity.epsilon == 5e-3);
   CHECK_FALSE(scene.radiosity.vmap_rays.has_value());
   CHECK(scene.radiosity.vmap == "fractions");
-  CHECK(scene.radiosity.direct_light == "shadow_rays");
+  CHECK(scene.radiosity.direct_light == "auto");
   CHECK_FALSE(scene.radiosity.place.has_value());
   CHECK(scene.caustics.photons == 400000);
   CHECK_FALSE(scene.caustics.feedback);
