@@ -104,7 +104,7 @@ TEST_CASE("light between surfaces is part of a picture unless the scene or the c
   };
   const auto whole = stats_of(scene, " --set radiosity.method=fmm");
   CHECK(names_of(whole["stages"], true) ==
-        std::vector<std::string>{"scene", "cloud", "octree", "vmap", "fmm", "render", "image"});
+        std::vector<std::string>{"scene", "cloud", "octree", "shafts", "vmap", "fmm", "render", "image"});
   CHECK(names_of(whole["stages"], false) == std::vector<std::string>{"normals", "photon"});
   for (const char* figure : {"pairs_tested", "links", "rays"})
     CHECK(whole["vmap"][figure].is_number());
@@ -138,7 +138,7 @@ TEST_CASE("light between surfaces is part of a picture unless the scene or the c
   // A ball alone sends itself nothing, which the planner knows before it asks who sees whom.
   const auto planned = stats_of(scene, "");
   CHECK(names_of(planned["stages"], true) ==
-        std::vector<std::string>{"scene", "cloud", "octree", "plan", "render", "image"});
+        std::vector<std::string>{"scene", "cloud", "octree", "shafts", "plan", "render", "image"});
   for (const char* stage : {"vmap", "fmm"})
     CHECK_THAT(reason_of(planned["stages"], stage), Contains("less than 0.001 of the light, radiosity.least_share"));
 }
