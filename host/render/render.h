@@ -55,7 +55,7 @@ struct RenderRequest {
   const DeviceCones* cones = nullptr; ///< by which pixels gather light between surfaces besides; null: they do not
   const Buffer<cl_float4>* stored_direct = nullptr; ///< what points know of their direct light (StoredDirect); null:
                                                     ///< nothing, all is left to shadow rays
-  bool shadow_rays = true;            ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
+  bool shadow_rays = true; ///< at pixels; false: direct light is in `irradiance` already (method.md §6)
   const Buffer<cl_float4>* normal_field = nullptr; ///< slopes of each point's normal; null: nothing is specular
 
   const DevicePhotonMap* photons = nullptr; ///< gathered on diffuse surfaces; null: none

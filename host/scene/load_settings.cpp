@@ -202,7 +202,8 @@ void load_radiosity(const TableReader& root, RadiositySettings& radiosity) {
   load_one_of(*table, "cones", limits::cone_counts, radiosity.cones);
   if (const auto sides = table->boolean("anisotropic")) radiosity.anisotropic = *sides;
   if (const auto at = table->choice("at", {"points", "pixels"})) radiosity.at = *at;
-  if (const auto direct = table->choice("direct_light", {"auto", "shadow_rays", "radiosity"})) radiosity.direct_light = *direct;
+  if (const auto direct = table->choice("direct_light", {"auto", "shadow_rays", "radiosity"}))
+    radiosity.direct_light = *direct;
   if (const auto share = table->number("least_share", limits::least_share)) radiosity.least_share = *share;
   if (const auto samples = table->integer("light_samples", limits::light_samples))
     radiosity.light_samples = static_cast<int>(*samples);

@@ -181,9 +181,9 @@ struct RadiositySettings {
   std::string at = "points";      ///< "pixels": cones of the picture's pixels, too, instead of light between points
   std::string direct_light = "auto"; ///< shadow rays at pixels where points do not know it; "shadow_rays": everywhere;
                                      ///< "radiosity": the thesis' way, none (method.md §6)
-  std::optional<int> light_samples; ///< estimates of the direct light of a point; absent: as many as its use needs
-  std::vector<std::string> notes;   ///< what the log should say of the keys: those that the method does not read
-  std::optional<SourcePlace> place; ///< set when the file has the section
+  std::optional<int> light_samples;  ///< estimates of the direct light of a point; absent: as many as its use needs
+  std::vector<std::string> notes;    ///< what the log should say of the keys: those that the method does not read
+  std::optional<SourcePlace> place;  ///< set when the file has the section
 };
 struct CausticSettings {
   long long photons = 400000;
