@@ -64,6 +64,8 @@ std::vector<float> light_of_sources(Session& session, const DevicePools& pools, 
 /// The same by the environment.
 std::vector<float> light_of_sky(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                 unsigned samples);
+/// a + b, of one size.
+std::vector<float> sum_of(std::vector<float> a, View<float> b);
 /// Whether the method tells what the environment adds, and rays need not.
 bool tells_sky(const RadiosityMethod& method, const IndirectRequest& request);
 
