@@ -281,7 +281,6 @@ double Session::wait(const cl::Kernel& kernel, const cl::Event& event, Clock::ti
                                        "; the driver's watchdog may have ended it, or the driver is at fault: use "
                                        "another --device, or a newer driver");
   }
-  const Clock::time_point returned = Clock::now();
   times.call_seconds = seconds_since(called);
   const auto read = [&](cl_profiling_info what, std::uint64_t& ns) { // no exception: some drivers have no clock
     return clGetEventProfilingInfo(event(), what, sizeof ns, &ns, nullptr) == CL_SUCCESS;
@@ -294,7 +293,7 @@ double Session::wait(const cl::Kernel& kernel, const cl::Event& event, Clock::ti
   time.launches += 1;
   time.seconds += seconds;
   if (!is_believable(times)) times.end_ns = times.start_ns + static_cast<std::uint64_t>(1e9 * seconds);
-  if (recording_) launches_.push_back({name, label_, times.start_ns, times.end_ns, returned});
+  if (recording_) launches_.push_back({name, label_, times.start_ns, times.end_ns, called});
   return seconds;
 }
 

@@ -35,9 +35,9 @@ using FaultInjector = std::function<int(const DeviceCall&)>;
 /// One launch as the device's clock saw it.
 struct LaunchRecord {
   std::string kernel;
-  std::string label;                              ///< what the caller said it works on; may be empty
-  std::uint64_t start_ns = 0, end_ns = 0;         ///< the device's clock, whose zero is its own
-  std::chrono::steady_clock::time_point returned; ///< when the host saw the end: soon after end_ns
+  std::string label;                            ///< what the caller said it works on; may be empty
+  std::uint64_t start_ns = 0, end_ns = 0;       ///< the device's clock, whose zero is its own
+  std::chrono::steady_clock::time_point called; ///< when the host asked for it: before start_ns
 };
 
 /// Typed device memory of a fixed number of elements; frees itself.

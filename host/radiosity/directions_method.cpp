@@ -8,8 +8,8 @@ namespace pointgi {
 
 namespace {
 
-/// Of more points a pixel shows several, and averages itself; neighbours would take memory.
-constexpr std::size_t most_that_share = 4'000'000;
+/// Of more points a pixel shows several, and averages itself; the search for neighbours takes 120 bytes a point.
+constexpr std::size_t most_that_share = 2'000'000;
 
 class PreparedDirections : public PreparedRadiosity {
 public:

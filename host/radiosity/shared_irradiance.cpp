@@ -26,6 +26,7 @@ double cosine_of(const Splat& a, const Splat& b) {
 SharedIrradiance::SharedIrradiance(View<Splat> pool, const std::vector<std::uint32_t>& places, std::vector<float> ways)
     : pool_(pool), places_(places), ways_(std::move(ways)) {
   std::vector<Eigen::Vector3d> positions;
+  positions.reserve(places_.size());
   for (std::size_t i = 0; i < places_.size(); ++i)
     positions.emplace_back(point(i).position[0], point(i).position[1], point(i).position[2]);
   if (positions.size() > 1) sites_ = std::make_unique<Sites>(positions);

@@ -49,13 +49,13 @@ nlohmann::json thread_name(int thread, const char* name) {
   return {{"name", "thread_name"}, {"ph", "M"}, {"pid", 1}, {"tid", thread}, {"args", {{"name", name}}}};
 }
 
-/// Seconds to add to the device's clock to get those since `begin`. The host sees a launch's end late, never early: the
-/// launch that it saw soonest tells best.
+/// Seconds to add to the device's clock to get those since `begin`. No launch starts before it was asked for: the one
+/// that started soonest tells best. Ends tell less: while a band waits to be taken, the next one runs.
 double clock_offset(const std::vector<LaunchRecord>& launches, std::chrono::steady_clock::time_point begin) {
-  double offset = std::numeric_limits<double>::infinity();
+  double offset = -std::numeric_limits<double>::infinity();
   for (const LaunchRecord& launch : launches)
-    offset = std::min(offset, std::chrono::duration<double>(launch.returned - begin).count() -
-                                  1e-9 * static_cast<double>(launch.end_ns));
+    offset = std::max(offset, std::chrono::duration<double>(launch.called - begin).count() -
+                                  1e-9 * static_cast<double>(launch.start_ns));
   return offset;
 }
 
