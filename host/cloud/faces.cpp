@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace pointgi {
 
@@ -59,20 +61,21 @@ bool is_free(const Faces& faces, const NearPoint& p) {
 
 /// Adds the plane that most of the free neighbours lie on.
 bool add_plane(const NearPoint* near, unsigned count, Faces& faces) {
-  unsigned most = fewest - 1;
+  std::vector<NearPoint> free;
+  std::copy_if(near, near + count, std::back_inserter(free), [&](const NearPoint& p) { return is_free(faces, p); });
+  std::size_t most = fewest - 1;
   const NearPoint* seed = nullptr;
-  for (unsigned i = 0; i < count; ++i) {
-    if (!is_free(faces, near[i]) ||
-        std::any_of(faces.plane.begin(), faces.plane.begin() + faces.count,
-                    [&](const Faces::Plane& plane) { return plane.normal.dot(near[i].normal) > apart; }))
+  for (const NearPoint& p : free) {
+    if (free.size() <= most) break; // none has more about it
+    if (std::any_of(faces.plane.begin(), faces.plane.begin() + faces.count,
+                    [&](const Faces::Plane& plane) { return plane.normal.dot(p.normal) > apart; }))
       continue;
-    unsigned on = 0;
-    for (unsigned j = 0; j < count; ++j)
-      on += near[j].normal.dot(near[i].normal) > like_face &&
-            std::abs((near[j].offset - near[i].offset).dot(near[i].normal)) < thick && is_free(faces, near[j]);
+    const auto on = static_cast<std::size_t>(std::count_if(free.begin(), free.end(), [&](const NearPoint& q) {
+      return q.normal.dot(p.normal) > like_face && std::abs((q.offset - p.offset).dot(p.normal)) < thick;
+    }));
     if (on > most) {
       most = on;
-      seed = &near[i];
+      seed = &p;
     }
   }
   if (seed == nullptr) return false;

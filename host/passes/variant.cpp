@@ -173,6 +173,10 @@ Program directions_program(const TraversalVariant& variant, bool hemicube) {
                                                           : "");
 }
 
+Program sky_program(bool hemicube, bool map) {
+  return {"radiosity/directions/sky.cl", std::string(hemicube ? "-D HEMICUBE" : "") + (map ? " -D HAS_SKY_MAP" : "")};
+}
+
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {
   return program(variant, "render/path.cl",
                  group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));

@@ -96,6 +96,8 @@ Program senders_program(const TraversalVariant& variant, unsigned voxels, bool m
 bool directions_in_beams(const TraversalVariant& variant, bool hemicube);
 /// What points see in directions of their own, trace_directions.
 Program directions_program(const TraversalVariant& variant, bool hemicube);
+/// For what points see of the sky in those directions.
+Program sky_program(bool hemicube, bool map);
 
 /// The picture by path tracing, path_pixels: a pixel a work-group of 8x4; never with fast math, for it is what others
 /// are measured by. `some_paths`: params.path_states leaves some out.

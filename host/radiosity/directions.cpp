@@ -1,4 +1,5 @@
 #include "host/radiosity/directions.h"
+#include "host/lights/smooth_sky.h"
 #include "host/radiosity/point_blocks.h"
 #include "shared/fmm_types.h"
 #include "shared/traversal_types.h"
@@ -38,20 +39,19 @@ std::uint64_t bytes_for_hits(std::uint64_t left, std::size_t pool) {
 
 DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant,
                                    View<Splat> pool, View<std::uint32_t> places, const DirectionsOptions& options)
-    : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)),
-      pool_points_(pool.size), points_an_item_(points_an_item(variant, options.pattern)),
-      group_(points_an_item_ > 1 ? 1 : variant.group.size()), seed_(options.seed), step_delta_(options.step_delta),
-      places_(places.begin(), places.end()),
+    : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)), pool_(pool),
+      hemicube_(options.pattern == DirectionPattern::hemicube),
+      points_an_item_(points_an_item(variant, options.pattern)), group_(points_an_item_ > 1 ? 1 : variant.group.size()),
+      seed_(options.seed), step_delta_(options.step_delta), places_(places.begin(), places.end()),
       trace_pace_(first_traced / points_an_item_,
                   std::min<std::size_t>(busy_work_items(session.info()),
                                         most_rays / points_an_item_ / set_.weights.size() + 1)),
       receive_pace_(first_received, busy_work_items(session.info())) {
   if (places_.empty()) return;
   if (!std::is_sorted(places_.begin(), places_.end())) throw std::invalid_argument("directions: places do not ascend");
-  const Program tracing = directions_program(variant, options.pattern == DirectionPattern::hemicube);
+  const Program tracing = directions_program(variant, hemicube_);
   trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
   receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
-  see_sky_ = session.kernel("radiosity/directions/receive.cl", "", "sky_by_directions");
   order_ = points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_;
   place_buffer_ = session.upload(order_);
   if (places_.back() + std::size_t{1} != places_.size()) // else each point is its own place
@@ -70,7 +70,7 @@ void DeviceDirections::keep_bands(const DirectionsOptions& options) {
   const std::uint64_t one_buffer = session_.info().max_allocation_bytes;
   const std::uint64_t available = options.memory_bytes != 0
                                       ? options.memory_bytes
-                                      : std::max<std::uint64_t>(1, bytes_for_hits(session_.bytes_left(), pool_points_));
+                                      : std::max<std::uint64_t>(1, bytes_for_hits(session_.bytes_left(), pool_.size));
   const std::uint64_t largest = std::max<std::uint64_t>(block, in_whole_blocks(one_buffer / a_point));
   // A band that is not kept needs its room, too.
   at_once_ = static_cast<cl_uint>(std::clamp<std::uint64_t>(in_whole_blocks(available / 8 / a_point), block,
@@ -132,40 +132,63 @@ void DeviceDirections::for_each_band(const std::function<void(const Band&)>& use
   }
 }
 
-std::vector<float> DeviceDirections::sky_share() {
+std::vector<float> DeviceDirections::sky(const DeviceLighting& lighting) {
   if (places_.empty()) return {};
-  const auto share = session_.allocate<float>(places_.size());
-  for_each_band([&](const Band& band) {
-    for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t size) {
-      const cl_uint from = band.first + static_cast<cl_uint>(first);
-      return session_.launch(see_sky_, LaunchShape::line(size, receive_group), band.hits, band.first, from,
-                             from + static_cast<cl_uint>(size), weights_, static_cast<cl_uint>(set_.weights.size()),
-                             share);
+  const bool map = lighting.sky != nullptr;
+  const Program program = sky_program(hemicube_, map);
+  cl::Kernel kernel = session_.kernel(program.file, program.options, "sky_by_directions");
+  const auto irradiance = session_.allocate<cl_float4>(places_.size());
+  const auto count = static_cast<cl_uint>(set_.weights.size());
+  const auto launch_with = [&](const auto&... sky) {
+    for_each_band([&](const Band& band) {
+      for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t size) {
+        const cl_uint from = band.first + static_cast<cl_uint>(first);
+        return session_.launch(kernel, LaunchShape::line(size, receive_group), band.hits, band.first, from,
+                               from + static_cast<cl_uint>(size), weights_, count, sky..., irradiance);
+      });
     });
-  });
-  return in_order_of_places(share);
+  };
+  if (map) {
+    std::vector<cl_float4> normals(places_.size());
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+      const float* normal = pool_[places_[order_[k]]].normal;
+      normals[k] = {{normal[0], normal[1], normal[2], 0.0f}};
+    }
+    launch_with(place_buffer_, session_.upload(normals), cells_, seed_,
+                session_.upload(smooth_sky(*lighting.sky, lighting.radiance.scale)));
+  } else {
+    const float* radiance = lighting.params.environment;
+    launch_with(cl_float4{{radiance[0], radiance[1], radiance[2], 0.0f}});
+  }
+  std::vector<float> of_places(3 * places_.size());
+  for_each_piece(irradiance,
+                 [&](std::size_t place, const cl_float4& found) { std::copy_n(found.s, 3, &of_places[3 * place]); });
+  return of_places;
 }
 
 std::vector<float> DeviceDirections::mean_ways() {
   if (places_.empty()) return {};
   if (!keeps_all()) for_each_band([](const Band&) {});
-  return in_order_of_places(ways_);
+  std::vector<float> of_places(places_.size());
+  for_each_piece(ways_, [&](std::size_t place, float way) { of_places[place] = way; });
+  return of_places;
 }
 
-std::vector<float> DeviceDirections::in_order_of_places(const Buffer<float>& traced) {
-  const auto found = session_.download(traced, places_.size());
-  std::vector<float> of_places(places_.size());
-  for (std::size_t k = 0; k < places_.size(); ++k)
-    of_places[order_[k]] = found[k];
-  return of_places;
+template <class T, class Take>
+void DeviceDirections::for_each_piece(const Buffer<T>& found, const Take& take) {
+  for (std::size_t first = 0; first < places_.size(); first += piece) {
+    const std::vector<T> some = session_.download(found, std::min(piece, places_.size() - first), first);
+    for (std::size_t k = 0; k < some.size(); ++k)
+      take(order_[first + k], some[k]);
+  }
 }
 
 /// Of all points of the pool, 0 of those that exchange none; in pieces, so that the host needs no copy of them all.
 Buffer<cl_float4> DeviceDirections::upload_radiosity(View<double> radiosity) {
-  const auto sent = session_.allocate<cl_float4>(pool_points_, CL_MEM_READ_ONLY);
+  const auto sent = session_.allocate<cl_float4>(pool_.size, CL_MEM_READ_ONLY);
   std::vector<cl_float4> texels;
-  for (std::size_t first = 0, i = 0; first < pool_points_; first += piece) {
-    const std::size_t end = std::min(pool_points_, first + piece);
+  for (std::size_t first = 0, i = 0; first < pool_.size; first += piece) {
+    const std::size_t end = std::min(pool_.size, first + piece);
     texels.assign(end - first, cl_float4{{0, 0, 0, 0}});
     for (; i < places_.size() && places_[i] < end; ++i)
       for (std::size_t c = 0; c < 3; ++c)
@@ -181,12 +204,9 @@ void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::ve
   if (places_.empty()) return;
   const auto sent = upload_radiosity(radiosity);
   for_each_band([&](const Band& band) { receive(band, sent); });
-  for (std::size_t first = 0; first < places_.size(); first += piece) {
-    const auto received = session_.download(irradiance_, std::min(piece, places_.size() - first), first);
-    for (std::size_t k = 0; k < received.size(); ++k)
-      for (std::size_t c = 0; c < 3; ++c)
-        irradiance[3 * std::size_t{order_[first + k]} + c] = double{received[k].s[c]};
-  }
+  for_each_piece(irradiance_, [&](std::size_t place, const cl_float4& received) {
+    std::copy_n(received.s, 3, &irradiance[3 * place]);
+  });
 }
 
 std::uint64_t DeviceDirections::kept_bytes() const {

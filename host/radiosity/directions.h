@@ -6,6 +6,7 @@
 #include "host/cl/session.h"
 #include "host/passes/device_pools.h"
 #include "host/radiosity/direction_set.h"
+#include "host/scene/lighting.h"
 #include "octree/splat.h"
 #include <functional>
 
@@ -13,7 +14,7 @@ namespace pointgi {
 
 struct DirectionsOptions {
   DirectionPattern pattern = DirectionPattern::stratified;
-  unsigned directions = 128; ///< a point
+  unsigned directions = 64; ///< a point
   unsigned seed = 1;
   float step_delta = 0.0f;                    ///< root cube units, of the absolute-delta variant only
   std::uint64_t memory_bytes = 0;             ///< what kept hits may take, 4 bytes a ray; 0: bytes_for_hits()
@@ -29,10 +30,10 @@ std::uint64_t bytes_for_hits(std::uint64_t left, std::size_t pool);
 /// at each apply. The same bits either way, and for any launches: what a point sees depends on it and the seed alone.
 class DeviceDirections : public RadiosityOperator {
 public:
-  /// `places`: of the points that exchange light, ascending, in the pool, whose points are `pool`. `pools` are those of
-  /// `variant` and hold all that blocks. With grouping packet, direction k of BEAM_RAYS points is traced as one beam,
-  /// but through patches and for hemicubes (directions_in_beams). `session` and `pools` must outlive this. Throws
-  /// Error(device), Error(memory); std::invalid_argument where places do not ascend.
+  /// `places`: of the points that exchange light, ascending, in the pool, whose points are `pool`, which must outlive
+  /// this. `pools` are those of `variant` and hold all that blocks. With grouping packet, direction k of BEAM_RAYS
+  /// points is traced as one beam, but through patches and for hemicubes (directions_in_beams). `session` and `pools`
+  /// must outlive this. Throws Error(device), Error(memory); std::invalid_argument where places do not ascend.
   DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, View<Splat> pool,
                    View<std::uint32_t> places, const DirectionsOptions& options);
 
@@ -40,8 +41,9 @@ public:
   /// Linear in B whatever the linearisation point is.
   void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
-  /// [points, in the order of `places`]: the share of an even sky that each sees.
-  std::vector<float> sky_share();
+  /// [points x 3, in the order of `places`, W/m² divided by the lighting's scale]: irradiance from the environment. A
+  /// map is looked up once a direction: what is brighter than the rest and small (a sun) is seldom met.
+  std::vector<float> sky(const DeviceLighting& lighting);
 
   /// [points, in the order of `places`, root cube units]: the harmonic mean of the lengths of each one's rays; infinity
   /// where they meet nothing.
@@ -69,12 +71,15 @@ private:
   void receive(const Band& band, const Buffer<cl_float4>& radiosity);
   /// Of all points, in bands: those that are kept, and then the others, traced again.
   void for_each_band(const std::function<void(const Band&)>& use);
-  std::vector<float> in_order_of_places(const Buffer<float>& traced);
+  /// take(index into `places`, value) of what the device has found, in pieces.
+  template <class T, class Take>
+  void for_each_piece(const Buffer<T>& found, const Take& take);
 
   Session& session_;
   DevicePools pools_;
   DirectionSet set_;
-  std::size_t pool_points_;
+  View<Splat> pool_;
+  bool hemicube_;
   cl_uint points_an_item_; ///< of the trace
   std::size_t group_;
   cl_uint seed_;
@@ -87,7 +92,7 @@ private:
   Buffer<std::array<float, 4>> cells_;
   Buffer<float> weights_, ways_;
   Buffer<cl_float4> irradiance_;
-  cl::Kernel trace_, receive_, see_sky_;
+  cl::Kernel trace_, receive_;
   Pace trace_pace_, receive_pace_; ///< work-items, points
   std::uint64_t rays_ = 0, beam_rays_ = 0;
   double trace_seconds_ = 0.0;

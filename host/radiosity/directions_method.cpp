@@ -37,17 +37,15 @@ public:
     for (std::size_t i = 0; i < irradiance.size(); ++i)
       irradiance[i] = field.irradiance[3 * places_[i / 3] + i % 3];
     shared_->share(irradiance, 3);
-    for (std::size_t i = 0; i < irradiance.size(); ++i)
-      field.irradiance[3 * places_[i / 3] + i % 3] = irradiance[i];
+    to_pool(irradiance, field.irradiance);
     return field;
   }
-  std::vector<float> sky_share() override {
-    std::vector<float> of_pool(pool_.size);
+  std::vector<float> sky(const DeviceLighting& lighting) override {
+    std::vector<float> of_pool(3 * pool_.size);
     if (!exchange_) return of_pool;
-    std::vector<float> share = exchange_->sky_share();
-    if (shared_) shared_->share(share, 1);
-    for (std::size_t i = 0; i < places_.size(); ++i)
-      of_pool[places_[i]] = share[i];
+    std::vector<float> seen = exchange_->sky(lighting);
+    if (shared_) shared_->share(seen, 3);
+    to_pool(seen, of_pool);
     return of_pool;
   }
   std::uint64_t rays() const override { return exchange_ ? exchange_->rays() : 0; }
@@ -62,6 +60,12 @@ public:
   }
 
 private:
+  /// Both [points x 3].
+  void to_pool(View<float> of_places, std::vector<float>& of_pool) const {
+    for (std::size_t i = 0; i < of_places.size; ++i)
+      of_pool[3 * places_[i / 3] + i % 3] = of_places[i];
+  }
+
   View<Splat> pool_;
   std::vector<std::uint32_t> places_;
   std::unique_ptr<DeviceDirections> exchange_; ///< absent: nothing exchanges light

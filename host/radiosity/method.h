@@ -53,9 +53,9 @@ public:
   /// irradiance, and where nothing exchanges light. Nothing may be solved for after that.
   virtual std::optional<DeviceCones> cones_of(View<float>) { return std::nullopt; }
 
-  /// [points of the pool]: the share of an even sky that each point sees, its directions counted by the cosine, where
-  /// the method has found that on its way; 0 of points that exchange no light. Else empty.
-  virtual std::vector<float> sky_share() { return {}; }
+  /// [points of the pool x 3, W/m² divided by the lighting's scale]: irradiance from the environment, where the method
+  /// finds that on its way (RadiosityMethod::tells_sky); 0 of points that exchange no light. Else empty.
+  virtual std::vector<float> sky(const DeviceLighting&) { return {}; }
 
   /// Rays that decided who sees whom until now, or in an earlier run. Solving traces only what a method does not keep.
   virtual std::uint64_t rays() const = 0;
@@ -79,7 +79,7 @@ struct RadiosityMethod {
                                                 const RadiositySettings& settings, std::optional<RadiosityMap> map,
                                                 const WorkReport& report);
   bool has_passes = false; ///< the light is there a bounce at a time, and can be looked at after each
-  bool tells_sky = false;  ///< PreparedRadiosity::sky_share() is known
+  bool tells_sky = false;  ///< PreparedRadiosity::sky() is known
 };
 
 /// All methods; the first is the one that needs a V-map.

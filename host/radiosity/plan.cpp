@@ -14,8 +14,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 /// Looks at two points that a look at two clusters is worth; those that the bound of a scene may take a point, and in
-/// all: a ball takes some 800 a point, and what is nearly flat but noisy would take all pairs. 3e8 take about 3 s.
-constexpr std::uint64_t work_of_clusters = 8, work_a_point = 1500, work_at_most = 300'000'000;
+/// all: a ball takes some 800 a point, and what is nearly flat but noisy would take all pairs. 1e8 take about 1 s.
+constexpr std::uint64_t work_of_clusters = 8, work_a_point = 1500, work_at_most = 100'000'000;
 constexpr std::uint64_t steps_between_asks = 4096; ///< about a tenth of a second
 
 std::string millions(double rays) {

@@ -68,7 +68,7 @@ inline constexpr NumberRange least_share{0.0, 1.0, false, true, "from 0 to below
 /// Of a bare cloud, whose picture comes first and whose light is a guess: a scan of 440k points has a quarter of the
 /// rays and 0.2 % less light between surfaces than with a scene's epsilon.
 inline constexpr double bare_epsilon = 2e-2;
-inline constexpr int bare_directions = 64;
+inline constexpr int bare_directions = 32;
 /// Four times coarser than a scene's epsilon, but not coarser than this: beyond it pairs of clusters that exchange a
 /// tenth of the light would not be divided, and what is drafted would look like another scene.
 inline constexpr double coarsest_draft_epsilon = 0.1;

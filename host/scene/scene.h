@@ -164,7 +164,7 @@ struct RadiositySettings {
   std::optional<long long> vmap_rays; ///< LinkOptions::most_rays; absent: default_vmap_rays (host/radiosity)
   double epsilon = 5e-3; ///< share of light below which a pair of clusters is not divided (octree/vmap/make_links.h)
   double tolerance = 1e-3;
-  int directions = 128;                     ///< of method "directions": of each point
+  int directions = 64;                      ///< of method "directions": of each point
   bool share = true;                        ///< as well: neighbours share what theirs have found
   std::string direction_set = "stratified"; ///< or "hemicube" (host/radiosity/direction_set.h)
   std::string sampling =

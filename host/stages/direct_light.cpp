@@ -1,4 +1,5 @@
 /// Direct light of the points: by shafts, by shadow rays, from the sky.
+#include "host/lights/smooth_sky.h"
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
 #include "host/stages/indirect_stages.h"
@@ -44,7 +45,8 @@ unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters
 }
 
 bool tells_sky(const RadiosityMethod& method, const IndirectRequest& request) {
-  return method.tells_sky && request.lighting.has_environment && request.lighting.sky == nullptr;
+  const DeviceLighting& lighting = request.lighting;
+  return method.tells_sky && lighting.has_environment && (lighting.sky == nullptr || is_smooth(*lighting.sky));
 }
 
 std::vector<float> light_of_sources(Session& session, const DevicePools& pools, const IndirectRequest& request,

@@ -140,16 +140,6 @@ RadiosityMap run_vmap(Session& session, const ExchangeScene& exchange, const Ind
   return map;
 }
 
-/// The sky's light at the points, by the share of it that each sees.
-std::vector<float> sky_by_method(const IndirectRequest& request, PreparedRadiosity& prepared) {
-  const std::vector<float> share = prepared.sky_share();
-  std::vector<float> sky;
-  for (const float seen : share)
-    for (const float radiance : request.lighting.params.environment)
-      sky.push_back(3.14159265f * radiance * seen);
-  return sky;
-}
-
 /// Whether direct light has to be passed on by surfaces at all: not where the light between them cannot matter.
 bool may_matter(const IndirectRequest& request, const RadiosityMap& clusters, View<float> direct) {
   const double least = request.scene.radiosity.least_share;
@@ -178,12 +168,17 @@ ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, cons
   ExchangePlan plan{{nullptr, {}, {}}, cluster_points(session, exchange, settings), {}, {}};
   // What mirrors throw, and what shines among the points, is not in the bound.
   const bool has_bound = settings.least_share > 0.0 && !request.lighting.has_specular() && !emitters_exchange;
+  bool matters = true;
   if (has_bound) {
     const unsigned samples = direct_light_samples(request, true);
     plan.sources = light_of_sources(session, exchange.pools, request, true, samples);
-    plan.sky = light_of_sky(session, exchange.pools, request, samples);
+    // Where directions may tell the sky, the bound alone asks for it here: a sum over all points.
+    const bool sky_comes_later = tells_sky(*radiosity_method("directions"), request);
+    std::vector<float> sky = light_of_sky(session, exchange.pools, request, sky_comes_later ? 1u : samples);
+    matters = may_matter(request, plan.clusters, sum_of(plan.sources, sky));
+    if (!sky_comes_later) plan.sky = std::move(sky);
   }
-  if (has_bound && !may_matter(request, plan.clusters, sum_of(plan.sources, plan.sky)))
+  if (!matters)
     plan.choice.reason = fmt::format("surfaces send each other less than {:g} of the light, radiosity.least_share",
                                      settings.least_share);
   else
@@ -213,7 +208,7 @@ RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, c
   const RadiositySettings& settings = request.scene.radiosity;
   const bool emitters_exchange = direct_light_by_radiosity(request.scene);
   light.prepared = light.method->prepare(session, exchange, settings, std::move(map), watch.report());
-  if (tells_sky(*light.method, request)) light.sky = sky_by_method(request, *light.prepared);
+  if (tells_sky(*light.method, request)) light.sky = light.prepared->sky(request.lighting);
   const unsigned samples = direct_light_samples(request, !emitters_exchange);
   if (light.direct.empty())
     light.direct = light_of_sources(session, exchange.pools, request, !emitters_exchange, samples);
@@ -286,6 +281,7 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     expected = plan.choice.vmap;
     without_vmap = plan.choice.reason;
     if (light.method == nullptr) {
+      if (sky.empty()) sky = light_of_sky(session, pools, request, direct_light_samples(request, true));
       light.direct = sum_of(std::move(light.direct), sky);
       skip(without_vmap);
       return light;

@@ -14,7 +14,7 @@ namespace pointgi {
 struct IndirectLight {
   std::vector<float> from_surfaces; ///< H(B)
   std::vector<float> direct;        ///< from lights; from splats that shine, too, unless they take part in the exchange
-  std::vector<float> sky;           ///< of it, from an even environment; empty: not known apart
+  std::vector<float> sky;           ///< of it, from the environment, as the method tells it; empty: not known apart
   Solution solution;
   std::uint64_t rays = 0; ///< that decided which points see each other
   std::vector<MethodStatistic> statistics;

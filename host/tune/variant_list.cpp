@@ -245,8 +245,11 @@ std::vector<ProgramUse> all_programs() {
     add(pairs_program(v), cpu, gpu);
     for (const bool monte_carlo : {false, true})
       add(senders_program(v, 0, monte_carlo), cpu, gpu);
-    for (const bool hemicube : {false, true})
+    for (const bool hemicube : {false, true}) {
       add(directions_program(v, hemicube), cpu, gpu);
+      for (const bool map : {false, true})
+        if (usual_walk && usual_group) add(sky_program(hemicube, map), cpu, gpu);
+    }
     add(path_program(v, traced, true), cpu, gpu);
     add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);

@@ -14,6 +14,27 @@ static inline float3 load3_constant(const __constant float* p) { return (float3)
 
 static inline float3 normalize3(float3 v) { return v / sqrt(dot3(v, v)); }
 
+/* c and s become cosine and sine of 2 pi v, 0 <= v <= 1, within 2e-7; `type`: of all three, float or a vector of floats. The
+ * built-in functions reduce angles of any size, which takes PoCL longer than the whole rest of a sample. About each quarter of
+ * the turn these are the polynomials of Moshier's Cephes library for |x| <= pi/4. */
+#define COSINE_SINE(type, v, c, s)                                                                             \
+  do {                                                                                                         \
+    const type turn_quarter = floor(fma((type)(v), (type)(4.0f), (type)(0.5f)));                               \
+    const type turn_x = 6.2831853f * fma(turn_quarter, (type)(-0.25f), (type)(v)), turn_x2 = turn_x * turn_x;   \
+    const type turn_s = fma(turn_x2 * turn_x,                                                                  \
+                            fma(fma((type)(-1.9515295891e-4f), turn_x2, (type)(8.3321608736e-3f)), turn_x2,    \
+                                (type)(-1.6666654611e-1f)),                                                    \
+                            turn_x);                                                                           \
+    const type turn_c = fma(turn_x2 * turn_x2,                                                                 \
+                            fma(fma((type)(2.443315711809948e-5f), turn_x2, (type)(-1.388731625493765e-3f)),   \
+                                turn_x2, (type)(4.166664568298827e-2f)),                                       \
+                            fma((type)(-0.5f), turn_x2, (type)(1.0f)));                                        \
+    const type turn_off = fabs(turn_quarter - 2.0f);                                                           \
+    const type turn_a = turn_off == 1.0f ? turn_s : turn_c, turn_b = turn_off == 1.0f ? turn_c : turn_s;       \
+    c = turn_quarter == 1.0f || turn_quarter == 2.0f ? -turn_a : turn_a;                                       \
+    s = turn_quarter == 2.0f || turn_quarter == 3.0f ? -turn_b : turn_b;                                       \
+  } while (0)
+
 /* Two unit vectors across the unit vector n (Duff et al. 2017, "Building an orthonormal basis, revisited"). */
 static inline void tangents(float3 n, float3* u, float3* v) {
   const float s = copysign(1.0f, n.z), a = -1.0f / (s + n.z), b = n.x * n.y * a;

@@ -149,3 +149,18 @@ __kernel void probe_places(__global float2* places, uint samples, uint seed, uin
     places[samples * i + s] = place_in_pixel(id, samples, jitter != 0u);
   }
 }
+
+/* found[i] = cosine and sine of 2 pi turns[i] as scalars, and as lanes of a vector. NDRange: count / 16, whole. */
+__kernel void probe_turn(const __global float* turns, __global float4* found) {
+  const uint first = 16u * (uint)get_global_id(0);
+  float16 c16, s16;
+  COSINE_SINE(float16, vload16(0, turns + first), c16, s16);
+  float c_lane[16], s_lane[16];
+  vstore16(c16, 0, c_lane);
+  vstore16(s16, 0, s_lane);
+  for (uint i = 0u; i < 16u; ++i) {
+    float c, s;
+    COSINE_SINE(float, turns[first + i], c, s);
+    found[first + i] = (float4)(c, s, c_lane[i], s_lane[i]);
+  }
+}

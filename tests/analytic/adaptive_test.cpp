@@ -9,9 +9,13 @@ namespace {
 
 constexpr int seeds = 24;
 
-/// A box on a floor below a lamp and an even sky: edges, borders of albedo, penumbra, umbra and plain floor.
-std::string yard(int spp) {
-  return head("0.6, 1.4, 2.0", "0.0, 0.15, 0.0", 40.0, spp, "[24, 20]") + environment(0.3) +
+/// A clear summer's morning: an even sky is darker opposite to the sun.
+const std::string sun = "[[light]]\ntype = \"sun\"\ndate = \"2024-06-21\"\ntime = \"09:00Z\"\nlatitude = 50.0\n"
+                        "longitude = 0.0\nturbidity = 2.5\n";
+
+/// A box on a floor below a lamp and a sky: edges, borders of albedo, penumbra, umbra and plain floor.
+std::string yard(int spp, const std::string& sky = environment(0.3)) {
+  return head("0.6, 1.4, 2.0", "0.0, 0.15, 0.0", 40.0, spp, "[24, 20]") + sky +
          material("floor", "diffuse", "albedo = [0.7, 0.6, 0.2]") +
          material("dark", "diffuse", "albedo = [0.1, 0.2, 0.5]") + lamp("lamp", 20.0) +
          quad("-1.0, 0.0, -1.0", "0.0, 0.0, 2.0", "1.2, 0.0, 0.0", "floor", 0.05) +
@@ -68,14 +72,15 @@ TEST_CASE("few samples of pixels in which nothing changes do not bias the mean")
 }
 
 TEST_CASE("light that shafts and directions tell is that of the path tracer") {
-  const std::string scene = yard(256) + "[radiosity]\nmethod = \"directions\"\ndirections = 256\n";
+  const std::string sky = GENERATE(environment(0.3), sun);
+  const std::string scene = yard(256, sky) + "[radiosity]\nmethod = \"directions\"\ndirections = 256\n";
   const Picture picture = render_text(scene), truth = trace(scene, "", 1024);
   // Noise of both: 0.2 % of the mean; light that points interpolate: 0.5 %.
   for (const char* channel : {"R", "G", "B"}) {
     CAPTURE(channel);
     CHECK(mean(picture, channel) == Approx(mean(truth, channel)).epsilon(0.01));
   }
-  const Picture direct = trace(yard(256), "LE,LDE", 1024);
+  const Picture direct = trace(yard(256, sky), "LE,LDE", 1024);
   // Direct light, the sky's from the points, alone.
   CHECK(mean(picture, "Direct.G") == Approx(mean(direct, "G")).epsilon(0.01));
 }

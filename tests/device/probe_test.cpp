@@ -160,6 +160,29 @@ int stratum(float place, cl_uint strata) {
 
 } // namespace
 
+TEST_CASE("cosine and sine of a turn are those of the angle, in lanes as well") {
+  std::vector<float> turns{0.0f, 0.125f, 0.25f, 0.375f, 0.5f, 0.625f, 0.75f, 0.875f, 1.0f, 0.99999994f, 5.9604645e-8f};
+  std::mt19937 g(5);
+  while (turns.size() < 65536)
+    turns.push_back(static_cast<float>(g() >> 8) * 0x1p-24f);
+  Session& device = session();
+  const auto in = device.upload(turns);
+  const auto out = device.allocate<cl_float4>(turns.size());
+  cl::Kernel kernel = device.kernel("test/probe.cl", build_options(TraversalVariant{}), "probe_turn");
+  device.launch(kernel, LaunchShape::line(turns.size() / 16, 1), in, out);
+  const auto found = device.download(out, turns.size());
+  double largest = 0.0;
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const double angle = 2.0 * 3.14159265358979323846 * double{turns[i]};
+    largest = std::max({largest, std::fabs(double{found[i].s[0]} - std::cos(angle)),
+                        std::fabs(double{found[i].s[1]} - std::sin(angle))});
+    different += found[i].s[0] != found[i].s[2] || found[i].s[1] != found[i].s[3];
+  }
+  CHECK(largest < 2e-7); // two roundings of a float below 1, and that of the angle
+  CHECK(different == 0);
+}
+
 TEST_CASE("every part of a pixel is sampled alike, whatever the number of samples") {
   const cl_uint pixels = 4096, samples = GENERATE(1u, 3u, 5u, 7u, 12u, 20u, 24u, 25u, 31u, 32u, 48u, 50u);
   constexpr int cells = 12; // a side; no multiple of most numbers of strata, nor they of it

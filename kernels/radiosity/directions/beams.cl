@@ -41,14 +41,17 @@ static inline DirectionBeams beams_of_points(POOL_PARAMS, const __global uint* p
   return b;
 }
 
-/* direction_in_cell of each point: the same bits where the device's vectors have the cosines and sines of its scalars. */
+/* direction_in_cell of each point: the same bits. */
 static inline void turn_beam(DirectionBeams* b, float4 cell, uint k, uint seed) {
   Beam* beam = &b->beam;
   uint16 hx = vload16(0, b->point), hy = (uint16)(k), hz = (uint16)(0x44495253u), hw = (uint16)(seed);
   PCG4D(hx, hy, hz, hw);
   const float16 u = fma(convert_float16(hx >> 8) * 0x1p-24f, (float16)(cell.y), (float16)(cell.x));
   const float16 v = fma(convert_float16(hy >> 8) * 0x1p-24f, (float16)(cell.w), (float16)(cell.z));
-  const float16 r = sqrt(u), phi = 6.2831853f * v, c = r * cos(phi), s = r * sin(phi);
+  const float16 r = sqrt(u);
+  float16 cosine, sine;
+  COSINE_SINE(float16, v, cosine, sine);
+  const float16 c = r * cosine, s = r * sine;
   const float16 h = sqrt(fmax((float16)(0.0f), 1.0f - u));
   const float16 x = c * b->ax + s * b->bx + h * beam->nx, y = c * b->ay + s * b->by + h * beam->ny;
   const float16 z = c * b->az + s * b->bz + h * beam->nz, length = sqrt(fma(x, x, fma(y, y, z * z)));

@@ -23,17 +23,3 @@ __kernel void receive_by_directions(const __global uint* hits, uint held_from, u
   }
   irradiance[i] = sum;
 }
-
-/* share[i] = sum of the weights of the directions in which the point sees the sky, for first <= i < end; arguments as above. */
-__kernel void sky_by_directions(const __global uint* hits, uint held_from, uint first, uint end, const __global float* weights,
-                                uint count, __global float* share) {
-  const uint i = first + get_global_id(0);
-  if (i >= end)
-    return;
-  const uint held = i - held_from;
-  const __global uint* hit = hits + FMM_LANES * ((ulong)(held / FMM_LANES) * count) + held % FMM_LANES;
-  float sum = 0.0f;
-  for (uint k = 0u; k < count; ++k)
-    sum += hit[FMM_LANES * k] == NO_SPLAT ? weights[k] : 0.0f;
-  share[i] = sum;
-}

@@ -4,8 +4,7 @@
  *   RAY_PACKETS  direction k of BEAM_RAYS points at once, whose order keeps those together that lie close and face about
  *                the same way; not with HEMICUBE, whose directions are turned otherwise at each point, nor HAS_MLS */
 #define BOUNCED_RAYS
-#include "lib/sampling.cl"
-#include "shared/fmm_types.h"
+#include "radiosity/directions/cell.cl"
 #include "traverse/traversal.cl"
 #ifdef RAY_PACKETS
 #if defined(HEMICUBE) || defined(HAS_MLS)
@@ -13,25 +12,6 @@
 #endif
 #include "radiosity/directions/beams.cl"
 #endif
-
-/* Direction k of a point, unit, in its own frame: its numbers depend on point, k and seed alone.
- * `cell`: first u, width in u, first v, width in v of the disc (cosine_direction); with HEMICUBE x, y, z, which are turned
- * about the normal by an angle of the point's own, or the cells' borders would be those of all points. */
-static inline float3 direction_in_cell(float3 normal, float4 cell, uint point, uint k, uint seed) {
-#ifdef HEMICUBE
-  const uint4 h = pcg4d((uint4)(point, 0u, 0x48454D49u, seed));
-  const float phi = 6.2831853f * unit_float(h.x), c = cos(phi), s = sin(phi);
-  float3 a, b;
-  tangents(normal, &a, &b);
-  return normalize3((c * cell.x - s * cell.y) * a + (s * cell.x + c * cell.y) * b + cell.z * normal);
-#else
-  const uint4 h = pcg4d((uint4)(point, k, 0x44495253u, seed));
-  return cosine_direction(normal, fma(unit_float(h.x), cell.y, cell.x), fma(unit_float(h.y), cell.w, cell.z));
-#endif
-}
-
-/* Hits are kept in blocks of FMM_LANES points: word FMM_LANES (block * count + k) + lane is that of direction k. */
-#define HIT_AT(i, k, count) (FMM_LANES * ((ulong)((i) / FMM_LANES) * (count) + (k)) + (i) % FMM_LANES)
 
 static inline OcclusionEnds ends_at(float4 centre, float4 normal) {
   OcclusionEnds ends = free_ends();
