@@ -1,5 +1,4 @@
 #include "host/radiosity/directions.h"
-#include "host/lights/smooth_sky.h"
 #include "host/radiosity/point_blocks.h"
 #include "shared/fmm_types.h"
 #include "shared/traversal_types.h"
@@ -154,8 +153,7 @@ std::vector<float> DeviceDirections::sky(const DeviceLighting& lighting) {
       const float* normal = pool_[places_[order_[k]]].normal;
       normals[k] = {{normal[0], normal[1], normal[2], 0.0f}};
     }
-    launch_with(place_buffer_, session_.upload(normals), cells_, seed_,
-                session_.upload(smooth_sky(*lighting.sky, lighting.radiance.scale)));
+    launch_with(place_buffer_, session_.upload(normals), cells_, seed_, session_.upload(lighting.smooth_sky));
   } else {
     const float* radiance = lighting.params.environment;
     launch_with(cl_float4{{radiance[0], radiance[1], radiance[2], 0.0f}});

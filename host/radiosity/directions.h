@@ -41,8 +41,8 @@ public:
   /// Linear in B whatever the linearisation point is.
   void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
-  /// [points x 3, in the order of `places`, W/m² divided by the lighting's scale]: irradiance from the environment. A
-  /// map is looked up once a direction: what is brighter than the rest and small (a sun) is seldom met.
+  /// [points x 3, in the order of `places`, W/m² divided by the lighting's scale]: irradiance from the environment, of
+  /// a map by its smooth_sky, which must be there.
   std::vector<float> sky(const DeviceLighting& lighting);
 
   /// [points, in the order of `places`, root cube units]: the harmonic mean of the lengths of each one's rays; infinity

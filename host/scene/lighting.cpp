@@ -1,5 +1,6 @@
 #include "host/scene/lighting.h"
 #include "host/lights/environment_map.h"
+#include "host/lights/smooth_sky.h"
 #include "host/scene/shares.h"
 #include <Eigen/Geometry>
 #include <cmath>
@@ -190,6 +191,7 @@ DeviceLighting device_lighting(const Scene& scene, const Frame& frame, View<Spla
   RenderParams& params = result.params;
   params.camera = device_camera(scene, frame);
   result.sky = scene.sky;
+  if (scene.sky != nullptr && is_smooth(*scene.sky)) result.smooth_sky = smooth_sky(*scene.sky, scale);
   copy3((scene.sky != nullptr ? mean_radiance(*scene.sky) : scene.environment) / scale, params.environment);
   params.samples = static_cast<pg_uint>(scene.render.spp);
   params.seed = scene.render.seed;

@@ -1,5 +1,4 @@
 /// Direct light of the points: by shafts, by shadow rays, from the sky.
-#include "host/lights/smooth_sky.h"
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
 #include "host/stages/indirect_stages.h"
@@ -18,6 +17,7 @@ DeviceLighting without_environment(const DeviceLighting& lighting) {
   DeviceLighting sources = lighting;
   sources.has_environment = false;
   sources.sky.reset();
+  sources.smooth_sky.clear();
   std::fill_n(sources.params.environment, 3, 0.0f);
   return sources;
 }
@@ -46,7 +46,7 @@ unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters
 
 bool tells_sky(const RadiosityMethod& method, const IndirectRequest& request) {
   const DeviceLighting& lighting = request.lighting;
-  return method.tells_sky && lighting.has_environment && (lighting.sky == nullptr || is_smooth(*lighting.sky));
+  return method.tells_sky && lighting.has_environment && (lighting.sky == nullptr || !lighting.smooth_sky.empty());
 }
 
 std::vector<float> light_of_sources(Session& session, const DevicePools& pools, const IndirectRequest& request,

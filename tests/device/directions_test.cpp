@@ -1,6 +1,6 @@
 /// Directional sampling on the device: what points see, against linear scans and closed forms.
-#include "host/lights/environment_map.h"
 #include "host/lights/sky_model.h"
+#include "host/lights/smooth_sky.h"
 #include "host/passes/build_pools.h"
 #include "host/radiosity/directions.h"
 #include "host/tune/variant_list.h"
@@ -243,7 +243,10 @@ TEST_CASE("directions on the device: the sky that points see is the closed form'
       lighting.has_environment = true;
       lighting.radiance.scale = mapped ? 4.0 : 1.0;
       std::copy_n(std::array<float, 3>{0.5f, 1.0f, 2.0f}.data(), 3, lighting.params.environment);
-      if (mapped) lighting.sky = map;
+      if (mapped) {
+        lighting.sky = map;
+        lighting.smooth_sky = smooth_sky(*map, lighting.radiance.scale);
+      }
       const Traced traced(splats);
       DeviceDirections exchange(session(), traced.pools, traced.variant, traced.points(), traced.places,
                                 with(256, pattern));
