@@ -44,7 +44,7 @@ std::string excluded(const VariantProfile& v) {
                 (static_cast<ProfiledKernel>(k) == ProfiledKernel::render
                      ? " of the picture's eye rays and pixels differ,"
                      : " of " + std::to_string(v.kernels[k].rays) + " " + name_of(static_cast<ProfiledKernel>(k)) +
-                           " rays differ,");
+                           (static_cast<ProfiledKernel>(k) == ProfiledKernel::segments ? " differ," : " rays differ,"));
     text.back() = ' ';
     return text + "from the reference";
   }
@@ -71,8 +71,8 @@ std::string remarks(const VariantProfile& v) {
 using Row = std::vector<std::string>;
 
 const Row& heads() {
-  static const Row row{"",        "variant", "x ref",     "spread", "render Mrays/s", "GB/s", "eye Mrays/s",
-                       "bounced", "any",     "pools MiB", "remarks"};
+  static const Row row{"",        "variant", "x ref",    "spread",    "render Mrays/s", "GB/s", "eye Mrays/s",
+                       "bounced", "any",     "segments", "pools MiB", "remarks"};
   return row;
 }
 
@@ -98,6 +98,7 @@ Row row_of(const VariantProfile& v, const VariantProfile& reference, std::size_t
           mrays(ProfiledKernel::eye),
           mrays(ProfiledKernel::bounced),
           mrays(ProfiledKernel::any),
+          mrays(ProfiledKernel::segments),
           number(static_cast<double>(v.pool_bytes) / 1048576.0, "%.1f"),
           remarks(v)};
 }
@@ -184,7 +185,8 @@ std::string profile_markdown(const ProfileReport& report) {
   return text + "\n" + conclusion(report) + "\n* " + order_defined + "; spread: its least and most\n* " +
          bytes_defined + "\n* " + ties_defined +
          "\n* eye: nearest hits of coherent rays, 8x4 a pixel; bounced: of cosine rays off random splats; any: whether "
-         "these hit anything; render: the picture's middle rows, eye and shadow rays\n";
+         "these hit anything; segments: whether anything stands between two splats, as the V-map asks; render: the "
+         "picture's middle rows, eye and shadow rays\n";
 }
 
 namespace {

@@ -292,8 +292,9 @@ double Session::wait(const cl::Kernel& kernel, const cl::Event& event, Clock::ti
   KernelTime& time = times_[name];
   time.launches += 1;
   time.seconds += seconds;
-  if (!is_believable(times)) times.end_ns = times.start_ns + static_cast<std::uint64_t>(1e9 * seconds);
-  if (recording_) launches_.push_back({name, label_, times.start_ns, times.end_ns, called});
+  const bool has_clock = is_believable(times);
+  if (!has_clock) times.end_ns = times.start_ns + static_cast<std::uint64_t>(1e9 * seconds);
+  if (recording_) launches_.push_back({name, label_, times.start_ns, times.end_ns, called, has_clock});
   return seconds;
 }
 

@@ -38,6 +38,7 @@ struct LaunchRecord {
   std::string label;                            ///< what the caller said it works on; may be empty
   std::uint64_t start_ns = 0, end_ns = 0;       ///< the device's clock, whose zero is its own
   std::chrono::steady_clock::time_point called; ///< when the host asked for it: before start_ns
+  bool has_clock = true;                        ///< what the device's clock said can be believed
 };
 
 /// Typed device memory of a fixed number of elements; frees itself.

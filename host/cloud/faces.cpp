@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
 namespace pointgi {
@@ -59,23 +58,54 @@ bool is_free(const Faces& faces, const NearPoint& p) {
                       [&](const Faces::Plane& plane) { return std::abs(off(plane, p)) < thick; });
 }
 
+/// Neighbours on no plane yet, their coordinates apart, as vector instructions take them: each is compared with all.
+class FreePoints {
+public:
+  FreePoints(const NearPoint* near, unsigned count, const Faces& faces) {
+    for (unsigned i = 0; i < count; ++i)
+      if (is_free(faces, near[i])) points_.push_back(&near[i]);
+    for (int c = 0; c < 3; ++c)
+      for (const NearPoint* p : points_) {
+        offset_[c].push_back(p->offset[c]);
+        normal_[c].push_back(p->normal[c]);
+      }
+  }
+
+  const std::vector<const NearPoint*>& points() const { return points_; }
+
+  /// How many lie on a plane through p across its normal, and face alike.
+  std::size_t on_plane_of(const NearPoint& p) const {
+    const double *x = offset_[0].data(), *y = offset_[1].data(), *z = offset_[2].data();
+    const double *u = normal_[0].data(), *v = normal_[1].data(), *w = normal_[2].data();
+    const double a = p.normal[0], b = p.normal[1], c = p.normal[2];
+    const double x0 = p.offset[0], y0 = p.offset[1], z0 = p.offset[2];
+    std::size_t on = 0;
+    for (std::size_t j = 0; j < points_.size(); ++j) {
+      const bool alike = u[j] * a + (v[j] * b + w[j] * c) > like_face;
+      const bool near = std::abs((x[j] - x0) * a + ((y[j] - y0) * b + (z[j] - z0) * c)) < thick;
+      on += static_cast<std::size_t>(alike & near);
+    }
+    return on;
+  }
+
+private:
+  std::vector<const NearPoint*> points_;
+  std::array<std::vector<double>, 3> offset_, normal_;
+};
+
 /// Adds the plane that most of the free neighbours lie on.
 bool add_plane(const NearPoint* near, unsigned count, Faces& faces) {
-  std::vector<NearPoint> free;
-  std::copy_if(near, near + count, std::back_inserter(free), [&](const NearPoint& p) { return is_free(faces, p); });
+  const FreePoints free(near, count, faces);
   std::size_t most = fewest - 1;
   const NearPoint* seed = nullptr;
-  for (const NearPoint& p : free) {
-    if (free.size() <= most) break; // none has more about it
+  for (const NearPoint* p : free.points()) {
+    if (free.points().size() <= most) break; // none has more about it
     if (std::any_of(faces.plane.begin(), faces.plane.begin() + faces.count,
-                    [&](const Faces::Plane& plane) { return plane.normal.dot(p.normal) > apart; }))
+                    [&](const Faces::Plane& plane) { return plane.normal.dot(p->normal) > apart; }))
       continue;
-    const auto on = static_cast<std::size_t>(std::count_if(free.begin(), free.end(), [&](const NearPoint& q) {
-      return q.normal.dot(p.normal) > like_face && std::abs((q.offset - p.offset).dot(p.normal)) < thick;
-    }));
-    if (on > most) {
+    if (const std::size_t on = free.on_plane_of(*p); on > most) {
       most = on;
-      seed = &p;
+      seed = p;
     }
   }
   if (seed == nullptr) return false;

@@ -42,7 +42,7 @@ std::vector<SkyTexel> device_texels(const EnvironmentMap& map, double scale);
 /// The frame in the root cube, whose axes are the world's.
 SkyMap device_sky_map(const EnvironmentMap& map);
 
-/// Index of the texel in that unit direction.
+/// Index of the texel in that direction, of any length above 0.
 std::size_t texel_towards(const EnvironmentMap& map, const Vector3d& direction);
 
 struct SkySample {

@@ -174,7 +174,7 @@ Program directions_program(const TraversalVariant& variant, bool hemicube) {
 }
 
 Program sky_program(bool hemicube, bool map) {
-  return {"radiosity/directions/sky.cl", std::string(hemicube ? "-D HEMICUBE" : "") + (map ? " -D HAS_SKY_MAP" : "")};
+  return {"radiosity/directions/sky.cl", !map ? "" : hemicube ? "-D HAS_SKY_MAP -D HEMICUBE" : "-D HAS_SKY_MAP"};
 }
 
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths) {

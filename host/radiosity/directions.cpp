@@ -41,31 +41,32 @@ DeviceDirections::DeviceDirections(Session& session, const DevicePools& pools, c
     : session_(session), pools_(pools), set_(direction_set(options.pattern, options.directions)), pool_(pool),
       hemicube_(options.pattern == DirectionPattern::hemicube),
       points_an_item_(points_an_item(variant, options.pattern)), group_(points_an_item_ > 1 ? 1 : variant.group.size()),
-      seed_(options.seed), step_delta_(options.step_delta), places_(places.begin(), places.end()),
+      seed_(options.seed), step_delta_(options.step_delta), places_(places),
       trace_pace_(first_traced / points_an_item_,
                   std::min<std::size_t>(busy_work_items(session.info()),
                                         most_rays / points_an_item_ / set_.weights.size() + 1)),
       receive_pace_(first_received, busy_work_items(session.info())) {
-  if (places_.empty()) return;
+  if (places_.size == 0) return;
   if (!std::is_sorted(places_.begin(), places_.end())) throw std::invalid_argument("directions: places do not ascend");
   const Program tracing = directions_program(variant, hemicube_);
   trace_ = session.kernel(tracing.file, tracing.options, "trace_directions");
   receive_ = session.kernel("radiosity/directions/receive.cl", "", "receive_by_directions");
-  order_ = points_an_item_ > 1 ? in_blocks(pool, places_, points_an_item_) : places_;
+  order_.assign(places_.begin(), places_.end());
+  if (points_an_item_ > 1) order_ = in_blocks(pool, std::move(order_), points_an_item_);
   place_buffer_ = session.upload(order_);
-  if (places_.back() + std::size_t{1} != places_.size()) // else each point is its own place
+  if (places_[places_.size - 1] + std::size_t{1} != places_.size) // else each point is its own place
     for (std::uint32_t& place : order_)
       place = static_cast<std::uint32_t>(std::lower_bound(places_.begin(), places_.end(), place) - places_.begin());
   cells_ = session.upload(set_.cells);
   weights_ = session.upload(set_.weights);
-  ways_ = session.allocate<float>(places_.size());
+  ways_ = session.allocate<float>(places_.size);
   ray_count_ = session.allocate<cl_uint>(2);
-  irradiance_ = session.allocate<cl_float4>(places_.size());
+  irradiance_ = session.allocate<cl_float4>(places_.size);
   keep_bands(options);
 }
 
 void DeviceDirections::keep_bands(const DirectionsOptions& options) {
-  const std::uint64_t a_point = sizeof(cl_uint) * set_.weights.size(), points = places_.size();
+  const std::uint64_t a_point = sizeof(cl_uint) * set_.weights.size(), points = places_.size;
   const std::uint64_t one_buffer = session_.info().max_allocation_bytes;
   const std::uint64_t available = options.memory_bytes != 0
                                       ? options.memory_bytes
@@ -123,59 +124,68 @@ void DeviceDirections::for_each_band(const std::function<void(const Band&)>& use
   for (const Band& band : bands_)
     use(band);
   Band again;
-  if (kept_ < places_.size()) again.hits = session_.allocate<cl_uint>(std::size_t{at_once_} * set_.weights.size());
-  for (again.first = kept_; again.first < places_.size(); again.first = again.end) {
-    again.end = static_cast<cl_uint>(std::min<std::size_t>(places_.size(), again.first + at_once_));
+  if (kept_ < places_.size) again.hits = session_.allocate<cl_uint>(std::size_t{at_once_} * set_.weights.size());
+  for (again.first = kept_; again.first < places_.size; again.first = again.end) {
+    again.end = static_cast<cl_uint>(std::min<std::size_t>(places_.size, again.first + at_once_));
     trace(again, {});
     use(again);
   }
 }
 
+/// Of the points in the order in which they are traced; in pieces, as upload_radiosity.
+Buffer<cl_float4> DeviceDirections::upload_normals() {
+  const auto sent = session_.allocate<cl_float4>(places_.size, CL_MEM_READ_ONLY);
+  std::vector<cl_float4> texels;
+  for (std::size_t first = 0; first < places_.size; first += piece) {
+    texels.clear();
+    for (std::size_t k = first; k < std::min(places_.size, first + piece); ++k) {
+      const float* normal = pool_[places_[order_[k]]].normal;
+      texels.push_back({{normal[0], normal[1], normal[2], 0.0f}});
+    }
+    session_.write(sent, texels.data(), texels.size(), first);
+  }
+  return sent;
+}
+
 std::vector<float> DeviceDirections::sky(const DeviceLighting& lighting) {
-  if (places_.empty()) return {};
+  if (places_.size == 0) return {};
   const bool map = lighting.sky != nullptr;
   const Program program = sky_program(hemicube_, map);
   cl::Kernel kernel = session_.kernel(program.file, program.options, "sky_by_directions");
-  const auto irradiance = session_.allocate<cl_float4>(places_.size());
   const auto count = static_cast<cl_uint>(set_.weights.size());
   const auto launch_with = [&](const auto&... sky) {
     for_each_band([&](const Band& band) {
       for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t size) {
         const cl_uint from = band.first + static_cast<cl_uint>(first);
         return session_.launch(kernel, LaunchShape::line(size, receive_group), band.hits, band.first, from,
-                               from + static_cast<cl_uint>(size), weights_, count, sky..., irradiance);
+                               from + static_cast<cl_uint>(size), weights_, count, sky..., irradiance_);
       });
     });
   };
   if (map) {
-    std::vector<cl_float4> normals(places_.size());
-    for (std::size_t k = 0; k < normals.size(); ++k) {
-      const float* normal = pool_[places_[order_[k]]].normal;
-      normals[k] = {{normal[0], normal[1], normal[2], 0.0f}};
-    }
-    launch_with(place_buffer_, session_.upload(normals), cells_, seed_, session_.upload(lighting.smooth_sky));
+    launch_with(place_buffer_, upload_normals(), cells_, seed_, session_.upload(lighting.smooth_sky));
   } else {
     const float* radiance = lighting.params.environment;
     launch_with(cl_float4{{radiance[0], radiance[1], radiance[2], 0.0f}});
   }
-  std::vector<float> of_places(3 * places_.size());
-  for_each_piece(irradiance,
+  std::vector<float> of_places(3 * places_.size);
+  for_each_piece(irradiance_,
                  [&](std::size_t place, const cl_float4& found) { std::copy_n(found.s, 3, &of_places[3 * place]); });
   return of_places;
 }
 
 std::vector<float> DeviceDirections::mean_ways() {
-  if (places_.empty()) return {};
+  if (places_.size == 0) return {};
   if (!keeps_all()) for_each_band([](const Band&) {});
-  std::vector<float> of_places(places_.size());
+  std::vector<float> of_places(places_.size);
   for_each_piece(ways_, [&](std::size_t place, float way) { of_places[place] = way; });
   return of_places;
 }
 
 template <class T, class Take>
 void DeviceDirections::for_each_piece(const Buffer<T>& found, const Take& take) {
-  for (std::size_t first = 0; first < places_.size(); first += piece) {
-    const std::vector<T> some = session_.download(found, std::min(piece, places_.size() - first), first);
+  for (std::size_t first = 0; first < places_.size; first += piece) {
+    const std::vector<T> some = session_.download(found, std::min(piece, places_.size - first), first);
     for (std::size_t k = 0; k < some.size(); ++k)
       take(order_[first + k], some[k]);
   }
@@ -188,7 +198,7 @@ Buffer<cl_float4> DeviceDirections::upload_radiosity(View<double> radiosity) {
   for (std::size_t first = 0, i = 0; first < pool_.size; first += piece) {
     const std::size_t end = std::min(pool_.size, first + piece);
     texels.assign(end - first, cl_float4{{0, 0, 0, 0}});
-    for (; i < places_.size() && places_[i] < end; ++i)
+    for (; i < places_.size && places_[i] < end; ++i)
       for (std::size_t c = 0; c < 3; ++c)
         texels[places_[i] - first].s[c] = static_cast<float>(radiosity[3 * i + c]);
     session_.write(sent, texels.data(), texels.size(), first);
@@ -197,9 +207,9 @@ Buffer<cl_float4> DeviceDirections::upload_radiosity(View<double> radiosity) {
 }
 
 void DeviceDirections::apply(View<double> radiosity, LinearisationPoint, std::vector<double>& irradiance) {
-  if (radiosity.size != 3 * places_.size()) throw std::invalid_argument("radiosity is not [points x 3]");
+  if (radiosity.size != 3 * places_.size) throw std::invalid_argument("radiosity is not [points x 3]");
   irradiance.resize(radiosity.size);
-  if (places_.empty()) return;
+  if (places_.size == 0) return;
   const auto sent = upload_radiosity(radiosity);
   for_each_band([&](const Band& band) { receive(band, sent); });
   for_each_piece(irradiance_, [&](std::size_t place, const cl_float4& received) {

@@ -30,14 +30,15 @@ std::uint64_t bytes_for_hits(std::uint64_t left, std::size_t pool);
 /// at each apply. The same bits either way, and for any launches: what a point sees depends on it and the seed alone.
 class DeviceDirections : public RadiosityOperator {
 public:
-  /// `places`: of the points that exchange light, ascending, in the pool, whose points are `pool`, which must outlive
-  /// this. `pools` are those of `variant` and hold all that blocks. With grouping packet, direction k of BEAM_RAYS
-  /// points is traced as one beam, but through patches and for hemicubes (directions_in_beams). `session` and `pools`
-  /// must outlive this. Throws Error(device), Error(memory); std::invalid_argument where places do not ascend.
+  /// `places`: of the points that exchange light, ascending, in the pool, whose points are `pool`. `pools` are those
+  /// of `variant` and hold all that blocks. With grouping packet, direction k of BEAM_RAYS
+  /// points is traced as one beam, but through patches and for hemicubes (directions_in_beams). `session`, `pools`,
+  /// `pool` and `places` must outlive this. Throws Error(device), Error(memory); std::invalid_argument where places do
+  /// not ascend.
   DeviceDirections(Session& session, const DevicePools& pools, const TraversalVariant& variant, View<Splat> pool,
                    View<std::uint32_t> places, const DirectionsOptions& options);
 
-  std::size_t points() const override { return places_.size(); }
+  std::size_t points() const override { return places_.size; }
   /// Linear in B whatever the linearisation point is.
   void apply(View<double> radiosity, LinearisationPoint about, std::vector<double>& irradiance) override;
 
@@ -49,7 +50,7 @@ public:
   /// where they meet nothing.
   std::vector<float> mean_ways();
   /// Whether no point is traced again at each apply.
-  bool keeps_all() const { return kept_ == places_.size(); }
+  bool keeps_all() const { return kept_ == places_.size; }
 
   unsigned directions() const { return static_cast<unsigned>(set_.weights.size()); } ///< a point
   std::uint64_t rays() const { return rays_; }            ///< with those that were traced again
@@ -67,6 +68,7 @@ private:
   void keep_bands(const DirectionsOptions& options);
   /// progress: of the band's points.
   void trace(const Band& band, const std::function<void(double)>& progress);
+  Buffer<cl_float4> upload_normals();
   Buffer<cl_float4> upload_radiosity(View<double> radiosity);
   void receive(const Band& band, const Buffer<cl_float4>& radiosity);
   /// Of all points, in bands: those that are kept, and then the others, traced again.
@@ -84,10 +86,10 @@ private:
   std::size_t group_;
   cl_uint seed_;
   float step_delta_;
-  std::vector<std::uint32_t> places_; ///< as given
-  std::vector<std::uint32_t> order_;  ///< index into `places_` of each that is traced, in their order: blocks of beams
-  std::vector<Band> bands_;           ///< kept: from the first point on
-  cl_uint kept_ = 0, at_once_ = 0;    ///< points of all of these; of a band that is not
+  View<std::uint32_t> places_;       ///< as given
+  std::vector<std::uint32_t> order_; ///< index into `places_` of each that is traced, in their order: blocks of beams
+  std::vector<Band> bands_;          ///< kept: from the first point on
+  cl_uint kept_ = 0, at_once_ = 0;   ///< points of all of these; of a band that is not
   Buffer<cl_uint> place_buffer_, ray_count_;
   Buffer<std::array<float, 4>> cells_;
   Buffer<float> weights_, ways_;

@@ -8,9 +8,6 @@ namespace pointgi {
 
 namespace {
 
-/// Of more points a pixel shows several, and averages itself; the search for neighbours takes 120 bytes a point.
-constexpr std::size_t most_that_share = 2'000'000;
-
 class PreparedDirections : public PreparedRadiosity {
 public:
   PreparedDirections(Session& session, const ExchangeScene& scene, const RadiositySettings& settings,
@@ -26,26 +23,28 @@ public:
       report(std::to_string(static_cast<int>(100.0 * share)) + " % of the rays");
     };
     exchange_ = std::make_unique<DeviceDirections>(session, scene.pools, scene.variant, scene.points, places_, options);
-    if (settings.share && exchange_->keeps_all() && places_.size() <= most_that_share)
-      shared_ = std::make_unique<SharedIrradiance>(scene.points, places_, exchange_->mean_ways());
+    shares_ = settings.share && exchange_->keeps_all();
   }
 
   RadiosityField solve(const EnteringLight& light, double tolerance, const WorkReport& report) override {
     RadiosityField field = solve_by_operator(exchange_.get(), {pool_, places_}, light, tolerance, report);
-    if (!shared_) return field;
+    if (!shares_) return field;
+    field.solution.radiosity = std::vector<double>(); // sharing takes its memory
     std::vector<float> irradiance(3 * places_.size());
     for (std::size_t i = 0; i < irradiance.size(); ++i)
       irradiance[i] = field.irradiance[3 * places_[i / 3] + i % 3];
-    shared_->share(irradiance, 3);
-    to_pool(irradiance, field.irradiance);
+    shared().share(irradiance, 3, field.irradiance);
     return field;
   }
   std::vector<float> sky(const DeviceLighting& lighting) override {
     std::vector<float> of_pool(3 * pool_.size);
     if (!exchange_) return of_pool;
-    std::vector<float> seen = exchange_->sky(lighting);
-    if (shared_) shared_->share(seen, 3);
-    to_pool(seen, of_pool);
+    const std::vector<float> seen = exchange_->sky(lighting);
+    if (shares_)
+      shared().share(seen, 3, of_pool);
+    else
+      for (std::size_t i = 0; i < seen.size(); ++i)
+        of_pool[3 * places_[i / 3] + i % 3] = seen[i];
     return of_pool;
   }
   std::uint64_t rays() const override { return exchange_ ? exchange_->rays() : 0; }
@@ -60,16 +59,17 @@ public:
   }
 
 private:
-  /// Both [points x 3].
-  void to_pool(View<float> of_places, std::vector<float>& of_pool) const {
-    for (std::size_t i = 0; i < of_places.size; ++i)
-      of_pool[3 * places_[i / 3] + i % 3] = of_places[i];
+  /// Made late: while light is solved for, memory is short.
+  const SharedIrradiance& shared() {
+    if (!shared_) shared_ = std::make_unique<SharedIrradiance>(pool_, places_, exchange_->mean_ways());
+    return *shared_;
   }
 
   View<Splat> pool_;
   std::vector<std::uint32_t> places_;
   std::unique_ptr<DeviceDirections> exchange_; ///< absent: nothing exchanges light
-  std::unique_ptr<SharedIrradiance> shared_;   ///< absent: each point is left with what its own rays find
+  bool shares_ = false;                        ///< else each point is left with what its own rays find
+  std::unique_ptr<SharedIrradiance> shared_;   ///< once it was asked for
 };
 
 std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene& scene,

@@ -22,7 +22,8 @@ struct EnteringLight {
 struct RadiosityField {
   std::vector<float> irradiance; ///< [points x 3, W/m² divided by the lighting's scale]: from surfaces to surfaces,
                                  ///< LDD+; 0 of points that do not exchange light
-  Solution solution; ///< radiosity of those that do, in the method's own order of the points, and its residual
+  Solution solution; ///< radiosity of those that do, in the method's own order of the points, where that is kept, and
+                     ///< its residual
 };
 
 /// A whole number that --stats writes under `section`.

@@ -22,7 +22,7 @@ struct DeviceLighting {
   std::shared_ptr<const EnvironmentMap> sky; ///< the environment's map, not yet scaled; null: params.environment alone
 
   std::vector<std::array<float, 4>> smooth_sky; ///< its coarse twin, scaled (host/lights/smooth_sky.h); empty: it has
-                                                ///< too much detail for one, or there is no map
+                                                ///< bright spots, or there is no map
 
   bool has_light() const { return !light_sources.empty() || !emitters.empty() || has_environment; }
   /// Whether some splat's material, not only some material, has this flag (MATERIAL_...).

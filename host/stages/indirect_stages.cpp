@@ -184,6 +184,8 @@ ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, cons
   else
     plan.choice = plan_method(session, exchange, settings, plan.clusters,
                               emitters_exchange && !request.lighting.emitters.empty());
+  if (has_bound && plan.sky.empty() && (plan.choice.method == nullptr || !tells_sky(*plan.choice.method, request)))
+    plan.sky = light_of_sky(session, exchange.pools, request, direct_light_samples(request, true));
   stages.finish(request.points.size, "points");
   log_info("radiosity: {}: {}",
            plan.choice.method != nullptr ? fmt::format("method \"{}\"", plan.choice.method->name) : "not solved",
@@ -281,7 +283,6 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
     expected = plan.choice.vmap;
     without_vmap = plan.choice.reason;
     if (light.method == nullptr) {
-      if (sky.empty()) sky = light_of_sky(session, pools, request, direct_light_samples(request, true));
       light.direct = sum_of(std::move(light.direct), sky);
       skip(without_vmap);
       return light;

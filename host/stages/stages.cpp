@@ -49,13 +49,18 @@ nlohmann::json thread_name(int thread, const char* name) {
   return {{"name", "thread_name"}, {"ph", "M"}, {"pid", 1}, {"tid", thread}, {"args", {{"name", name}}}};
 }
 
+/// Seconds since `begin` at which the host asked for a launch.
+double called_at(const LaunchRecord& launch, std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(launch.called - begin).count();
+}
+
 /// Seconds to add to the device's clock to get those since `begin`. No launch starts before it was asked for: the one
 /// that started soonest tells best. Ends tell less: while a band waits to be taken, the next one runs.
 double clock_offset(const std::vector<LaunchRecord>& launches, std::chrono::steady_clock::time_point begin) {
   double offset = -std::numeric_limits<double>::infinity();
   for (const LaunchRecord& launch : launches)
-    offset = std::max(offset, std::chrono::duration<double>(launch.called - begin).count() -
-                                  1e-9 * static_cast<double>(launch.start_ns));
+    if (launch.has_clock)
+      offset = std::max(offset, called_at(launch, begin) - 1e-9 * static_cast<double>(launch.start_ns));
   return offset;
 }
 
@@ -72,7 +77,9 @@ std::string StageLog::chrome_trace(const std::vector<LaunchRecord>& launches) co
   for (const LaunchRecord& launch : launches) {
     nlohmann::json arguments = nlohmann::json::object();
     if (!launch.label.empty()) arguments["variant"] = launch.label;
-    events.push_back(trace_event(launch.kernel, "kernel", device, offset + 1e-9 * static_cast<double>(launch.start_ns),
+    const double start =
+        launch.has_clock ? offset + 1e-9 * static_cast<double>(launch.start_ns) : called_at(launch, begin_);
+    events.push_back(trace_event(launch.kernel, "kernel", device, start,
                                  1e-9 * static_cast<double>(launch.end_ns - launch.start_ns), arguments));
   }
   return nlohmann::json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump(1);

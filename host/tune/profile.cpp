@@ -8,7 +8,7 @@
 namespace pointgi {
 
 const char* name_of(ProfiledKernel kernel) {
-  static constexpr const char* names[profiled_kernels] = {"eye", "bounced", "any", "render"};
+  static constexpr const char* names[profiled_kernels] = {"eye", "bounced", "any", "segments", "render"};
   return names[static_cast<std::size_t>(kernel)];
 }
 
@@ -66,8 +66,9 @@ struct Measured {
 /// Equal for launches that do the same work.
 std::string launch_key(ProfiledKernel kernel, const TraversalVariant& v) {
   const bool picture = kernel == ProfiledKernel::render;
-  const std::string options =
-      picture ? eye_rays_program(v).options + shade_program(v, {}).options : trace_program(v).options;
+  const std::string options = picture ? eye_rays_program(v).options + shade_program(v, {}).options
+                              : kernel == ProfiledKernel::segments ? segments_program(v).options
+                                                                   : trace_program(v).options;
   const bool grouped = kernel == ProfiledKernel::eye || picture;
   return std::string(name_of(kernel)) + "|" + options + "|" + pools_key(v) + "|" +
          (picture ? name_of(v.group) : std::to_string(v.group.size())) + "|" + (grouped ? name_of(v.grouping) : "");

@@ -13,12 +13,13 @@ class Session;
 
 /// What is timed of each variant.
 enum class ProfiledKernel {
-  eye,     ///< nearest hits of the camera's rays, 8x4 a pixel: coherent
-  bounced, ///< nearest hits of cosine rays off random splats: incoherent
-  any,     ///< whether these hit anything
-  render   ///< eye rays and shading of rows of the picture: what a user waits for
+  eye,      ///< nearest hits of the camera's rays, 8x4 a pixel: coherent
+  bounced,  ///< nearest hits of cosine rays off random splats: incoherent
+  any,      ///< whether these hit anything
+  segments, ///< whether anything stands between two splats, of pairs drawn at random: what the V-map asks
+  render    ///< eye rays and shading of rows of the picture: what a user waits for
 };
-constexpr std::size_t profiled_kernels = 4;
+constexpr std::size_t profiled_kernels = 5;
 const char* name_of(ProfiledKernel kernel);
 
 struct ProfileRequest {

@@ -61,8 +61,11 @@ void ProfileBench::set_rays(ProfiledKernel kernel, std::size_t count) {
     render_window_ = middle_window(picture.width, picture.height, count / GRID_RAYS);
   } else {
     bounced_ = session_.upload(bounced_rays(request_.splats, count, request_.seed));
-    rays_[at(ProfiledKernel::bounced)] = rays_[at(ProfiledKernel::any)] = count;
+    rays_[at(ProfiledKernel::bounced)] = rays_[at(ProfiledKernel::any)] = rays_[at(ProfiledKernel::segments)] = count;
     blocked_ = session_.allocate<cl_uint>(count);
+    if (splats_.size == 0) splats_ = session_.upload(request_.splats);
+    segments_ = session_.upload(segments_between(request_.splats.size(), count, request_.seed));
+    hidden_ = session_.allocate<cl_uchar>(count);
   }
   answers_ = session_.allocate<RayAnswer>(std::max(eye_.size, bounced_.size));
 }
@@ -86,6 +89,14 @@ double ProfileBench::trace(ProfiledKernel kernel, const TraversalVariant& varian
   return session_.launch(traced, shape, p.nodes, p.leaves, p.points, rays, answers_, number, 0.0f);
 }
 
+double ProfileBench::segments(const TraversalVariant& variant, const ProfiledPools& pools) {
+  const Program program = segments_program(variant);
+  cl::Kernel kernel = session_.kernel(program.file, program.options, "segments_blocked");
+  const DevicePools& p = pools.device;
+  return session_.launch(kernel, LaunchShape::line(segments_.size, variant.group.size()), p.nodes, p.leaves, p.points,
+                         splats_, segments_, hidden_, static_cast<cl_uint>(segments_.size), 0.0f);
+}
+
 double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers) {
   TileRenderer tiles(session_, pools.device, pools.tree->lighting, request_.frame.side, variant, {}, nullptr, true,
                      nullptr, nullptr, Backfaces::shade, nullptr, nullptr, pools.tree->source.size());
@@ -103,6 +114,7 @@ double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools
 
 double ProfileBench::launch(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools) {
   session_.label_launches(name_of(variant) + " " + name_of(kernel));
+  if (kernel == ProfiledKernel::segments) return segments(variant, pools);
   return kernel == ProfiledKernel::render ? render(variant, pools, nullptr) : trace(kernel, variant, pools);
 }
 
@@ -112,6 +124,13 @@ ProfileBench::Answers ProfileBench::answers(ProfiledKernel kernel, const Travers
   Answers found;
   if (kernel == ProfiledKernel::render) {
     render(variant, pools, &found);
+    return found;
+  }
+  if (kernel == ProfiledKernel::segments) {
+    session_.fill(hidden_, cl_uchar{2}, hidden_.size);
+    segments(variant, pools);
+    const std::vector<cl_uchar> hidden = session_.download(hidden_, hidden_.size);
+    found.blocked.assign(hidden.begin(), hidden.end());
     return found;
   }
   // What a kernel leaves unwritten must not be another one's right answer.
@@ -140,6 +159,7 @@ Differences ProfileBench::launch_and_compare(ProfiledKernel kernel, const Traver
   const Answers found = answers(kernel, variant, pools), &truth = truth_[at(kernel)];
   switch (kernel) {
   case ProfiledKernel::any:
+  case ProfiledKernel::segments:
     return compare_blocked(found.blocked, truth.blocked);
   case ProfiledKernel::render:
     return compare_answers(found.hits, truth.hits) +
@@ -224,6 +244,8 @@ std::uint64_t ProfileBench::bytes(ProfiledKernel kernel, const TraversalVariant&
   switch (kernel) {
   case ProfiledKernel::any:
     return pool_bytes + rays(kernel) * (sizeof(RayQuery) + sizeof(cl_uint));
+  case ProfiledKernel::segments:
+    return pool_bytes + rays(kernel) * (sizeof(SegmentQuery) + 2 * sizeof(Splat) + sizeof(cl_uchar));
   case ProfiledKernel::render: { // two kernels: both read the pools, hits are written and read
     const PixelWindow& w = render_window_;
     const auto pixels = static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0);

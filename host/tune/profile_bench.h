@@ -54,6 +54,7 @@ private:
   };
 
   double trace(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
+  double segments(const TraversalVariant& variant, const ProfiledPools& pools);
   double render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers);
   Answers answers(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
   void set_rays(ProfiledKernel kernel, std::size_t count);
@@ -70,6 +71,9 @@ private:
   Buffer<RayAnswer> answers_;
   Buffer<RayPacketAnswer> packet_answers_;
   Buffer<cl_uint> blocked_;
+  Buffer<Splat> splats_; ///< of the request: ends of segments
+  Buffer<SegmentQuery> segments_;
+  Buffer<cl_uchar> hidden_; ///< of segments
   std::array<std::uint64_t, profiled_kernels> rays_{};
   std::array<Answers, profiled_kernels> truth_;
 };

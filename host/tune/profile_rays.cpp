@@ -66,6 +66,16 @@ std::vector<RayQuery> bounced_rays(View<Splat> splats, std::size_t count, unsign
   return rays;
 }
 
+std::vector<SegmentQuery> segments_between(std::size_t splats, std::size_t count, unsigned seed) {
+  std::mt19937 g(seed);
+  std::vector<SegmentQuery> segments(count);
+  for (SegmentQuery& segment : segments) {
+    segment.from = static_cast<pg_uint>(g() % splats);
+    segment.to = static_cast<pg_uint>(g() % splats);
+  }
+  return segments;
+}
+
 PixelWindow middle_window(int width, int height, std::size_t pixels) {
   const int wanted = static_cast<int>(std::min<std::size_t>(pixels, 1u << 30));
   const int rows = std::clamp(wanted / width, std::min(4, height), height);

@@ -1,5 +1,5 @@
 #pragma once
-/// The rays that `pointgi profile` times: the two kinds that a renderer has.
+/// The rays that `pointgi profile` times: the two kinds that a renderer has, and the V-map's.
 #include "host/image/picture_writer.h"
 #include "octree/splat.h"
 #include "octree/view.h"
@@ -14,6 +14,9 @@ std::vector<RayQuery> eye_rays(const Camera& camera, const PixelWindow& window);
 
 /// Incoherent: off splats chosen at random, in cosine-distributed directions about their normals, as light bounces.
 std::vector<RayQuery> bounced_rays(View<Splat> splats, std::size_t count, unsigned seed);
+
+/// Between splats chosen at random: indices below `splats`.
+std::vector<SegmentQuery> segments_between(std::size_t splats, std::size_t count, unsigned seed);
 
 /// About `pixels` pixels of the picture's middle rows, at most `height`: whole rows where they fit, so that background,
 /// rims and surface all count.

@@ -199,6 +199,8 @@ std::vector<ProgramUse> all_programs() {
                            "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl",
                            "radiosity/gather/receive_from_senders.cl", "radiosity/gather/receive_picked.cl"})
     uses.push_back({fmm_program(file), true, true});
+  for (const Program& program : {sky_program(false, false), sky_program(false, true), sky_program(true, true)})
+    uses.push_back({program, true, true});
   for (const unsigned voxels : {32u, 64u, 128u})
     for (const Program& program :
          {pairs_program({}, voxels), senders_program({}, voxels, false), senders_program({}, voxels, true)})
@@ -245,11 +247,8 @@ std::vector<ProgramUse> all_programs() {
     add(pairs_program(v), cpu, gpu);
     for (const bool monte_carlo : {false, true})
       add(senders_program(v, 0, monte_carlo), cpu, gpu);
-    for (const bool hemicube : {false, true}) {
+    for (const bool hemicube : {false, true})
       add(directions_program(v, hemicube), cpu, gpu);
-      for (const bool map : {false, true})
-        if (usual_walk && usual_group) add(sky_program(hemicube, map), cpu, gpu);
-    }
     add(path_program(v, traced, true), cpu, gpu);
     add(trace_photons_program(v, traced, PhotonStart::aimed), cpu, gpu);
     if (v.form == TraversalForm::step) add({"test/probe.cl", build_options(v)}, cpu, gpu);

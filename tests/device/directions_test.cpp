@@ -269,3 +269,38 @@ TEST_CASE("directions on the device: the sky that points see is the closed form'
       CHECK(std::count(nothing.begin(), nothing.end(), 0.0f) >= static_cast<std::ptrdiff_t>(nothing.size()) - 9);
     }
 }
+
+TEST_CASE("directions on the device: the sky is the same in beams or not, with hits kept or traced again, with gaps in "
+          "places") {
+  const auto splats = room_splats(1500);
+  const SkyFrame frame = sky_frame(UpAxis::z, 0.0);
+  DeviceLighting lighting;
+  lighting.has_environment = true;
+  lighting.sky = std::make_shared<EnvironmentMap>(
+      make_environment_map(sky_image(make_sky_model(frame, 120.0, 40.0, 3.0, 0.2), frame, 128, 64), frame, 1.0, "sky"));
+  lighting.smooth_sky = smooth_sky(*lighting.sky, 1.0);
+  TraversalVariant packets = plain_variant(TraversalForm::wide);
+  packets.grouping = RayGrouping::packet;
+  const Traced traced(splats);
+  const auto sky_of = [&](const TraversalVariant& variant, const std::vector<std::uint32_t>& places,
+                          std::uint64_t bytes) {
+    DirectionsOptions options = with(64);
+    options.memory_bytes = bytes;
+    return DeviceDirections(session(), traced.pools, variant, traced.points(), places, options).sky(lighting);
+  };
+  const std::vector<float> all = sky_of(traced.variant, traced.places, 0);
+  CHECK(*std::max_element(all.begin(), all.end()) > 0.0f); // the room has a gap
+  CHECK(sky_of(traced.variant, traced.places, 100'000) == all);
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t place = 0; place < traced.places.size(); ++place)
+    if (place % 3 != 1) some.push_back(place);
+  const std::vector<float> of_some = sky_of(traced.variant, some, 0);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < of_some.size(); ++i)
+    different += of_some[i] != all[3 * some[i / 3] + i % 3];
+  CHECK(different == 0);
+  if (session().info().is_cpu) {
+    CHECK(sky_of(packets, traced.places, 0) == all);
+    CHECK(sky_of(packets, some, 0) == of_some);
+  }
+}

@@ -67,7 +67,7 @@ TEST_CASE("profile measures, checks, tells and stores, and render uses what was 
   CHECK(json["variants"].size() == 2);
   CHECK(json["proved_rays"] > 100);
   for (const auto& v : json["variants"])
-    for (const char* kernel : {"eye", "bounced", "any", "render"}) {
+    for (const char* kernel : {"eye", "bounced", "any", "segments", "render"}) {
       const auto& k = v["kernels"][kernel];
       CHECK(k["seconds"].size() == 2);
       CHECK(k["wrong"] == 0);
@@ -81,7 +81,7 @@ TEST_CASE("profile measures, checks, tells and stores, and render uses what was 
   std::set<std::string> kernels;
   for (const auto& event : trace["traceEvents"])
     if (event.value("cat", "") == "kernel") kernels.insert(event["name"]);
-  CHECK(kernels == std::set<std::string>{"brute_force_closest", "shade_pixels", "trace_any_rays", "trace_closest_rays",
+  CHECK(kernels == std::set<std::string>{"brute_force_closest", "segments_blocked", "shade_pixels", "trace_any_rays", "trace_closest_rays",
                                          "trace_eye_rays", "trace_packets"});
   CHECK_THAT(contents(s.folder.file("out/profile.md")), Contains("| " + best + " |") && Contains("bytes a second"));
 

@@ -1,8 +1,7 @@
-/* The directions of a point, and where what it meets in them is kept.
+/* The directions of a point.
  *   HEMICUBE  the directions are those of a hemicube's cells; else cells of the disc below the hemisphere, in each of
  *             which a place is drawn */
 #include "lib/sampling.cl"
-#include "shared/fmm_types.h"
 
 /* Direction k of a point, unit, in its own frame: its numbers depend on point, k and seed alone.
  * `cell`: first u, width in u, first v, width in v of the disc (cosine_direction); with HEMICUBE x, y, z, which are turned
@@ -20,6 +19,3 @@ static inline float3 direction_in_cell(float3 normal, float4 cell, uint point, u
   return cosine_direction(normal, fma(unit_float(h.x), cell.y, cell.x), fma(unit_float(h.y), cell.w, cell.z));
 #endif
 }
-
-/* Hits are kept in blocks of FMM_LANES points: word FMM_LANES (block * count + k) + lane is that of direction k. */
-#define HIT_AT(i, k, count) (FMM_LANES * ((ulong)((i) / FMM_LANES) * (count) + (k)) + (i) % FMM_LANES)

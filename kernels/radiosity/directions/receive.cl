@@ -1,7 +1,6 @@
 /* Irradiance of the points from what they see in a set of directions: H = sum over k of w_k B(hit k), the weights being the
  * directions' form factors, which sum to 1 (method.md section 8). */
-#include "shared/fmm_types.h"
-#include "shared/traversal_types.h"
+#include "radiosity/directions/hits.cl"
 
 /* irradiance[i].xyz for first <= i < end. NDRange: 1-D, padded, a work-item a point.
  *   hits       as trace_directions writes them, of the points from held_from on
@@ -14,10 +13,9 @@ __kernel void receive_by_directions(const __global uint* hits, uint held_from, u
   if (i >= end)
     return;
   const uint held = i - held_from;
-  const __global uint* hit = hits + FMM_LANES * ((ulong)(held / FMM_LANES) * count) + held % FMM_LANES;
   float4 sum = (float4)(0.0f);
   for (uint k = 0u; k < count; ++k) {
-    const uint splat = hit[FMM_LANES * k];
+    const uint splat = hits[HIT_AT(held, k, count)];
     if (splat < BACK_SEEN)
       sum += weights[k] * radiosity[splat];
   }

@@ -2,7 +2,7 @@
  *   HAS_SKY_MAP  the sky is a map; else the same from every direction
  *   HEMICUBE     see radiosity/directions/cell.cl */
 #include "radiosity/directions/cell.cl"
-#include "shared/traversal_types.h"
+#include "radiosity/directions/hits.cl"
 #ifdef HAS_SKY_MAP
 #include "shared/sky_types.h"
 #define SKY_PARAMS \
@@ -26,9 +26,12 @@ static inline float4 smooth_sky_towards(const __global float4* smooth_sky, float
 /* irradiance[i].xyz [W/m2, scaled as RenderParams] for first <= i < end. NDRange: 1-D, padded, a work-item a point.
  *   hits     as trace_directions writes them, of the points from held_from on
  *   weights  `count` of them, of the directions
- *   sky      .xyz: its radiance; of a map
- *   places, cells, seed  trace_directions'
- *   normals  .xyz: of point i */
+ * Without a map:
+ *   sky      .xyz: its radiance
+ * With one:
+ *   places, cells, seed  those of trace_directions
+ *   normals     .xyz: of point i
+ *   smooth_sky  SMOOTH_SKY_SIDE^2 texels, .xyz: radiance */
 __kernel void sky_by_directions(const __global uint* hits, uint held_from, uint first, uint end, const __global float* weights,
                                 uint count, SKY_PARAMS, __global float4* irradiance) {
   const uint i = first + get_global_id(0);

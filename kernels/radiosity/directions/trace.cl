@@ -1,10 +1,10 @@
 /* Directional sampling (method.md section 8): which splat each point sees in each of a set of directions.
- *   HEMICUBE  the directions are those of a hemicube's cells; else cells of the disc below the hemisphere, in each of
- *             which a place is drawn
+ *   HEMICUBE     see radiosity/directions/cell.cl
  *   RAY_PACKETS  direction k of BEAM_RAYS points at once, whose order keeps those together that lie close and face about
  *                the same way; not with HEMICUBE, whose directions are turned otherwise at each point, nor HAS_MLS */
 #define BOUNCED_RAYS
 #include "radiosity/directions/cell.cl"
+#include "radiosity/directions/hits.cl"
 #include "traverse/traversal.cl"
 #ifdef RAY_PACKETS
 #if defined(HEMICUBE) || defined(HAS_MLS)

@@ -12,10 +12,10 @@ using namespace pointgi::test;
 
 namespace {
 
-EnvironmentMap clear_sky(UpAxis up, double elevation_deg) {
+EnvironmentMap clear_sky(UpAxis up, double elevation_deg, double turbidity = 3.0) {
   const SkyFrame frame = sky_frame(up, 25.0);
-  return make_environment_map(sky_image(make_sky_model(frame, 120.0, elevation_deg, 3.0, 0.2), frame, 256, 128), frame,
-                              1.0, "sky");
+  return make_environment_map(sky_image(make_sky_model(frame, 120.0, elevation_deg, turbidity, 0.2), frame, 256, 128),
+                              frame, 1.0, "sky");
 }
 
 /// The texel of the octahedron |x| + |y| + |z| = 1 that a direction meets, as its definition has it.
@@ -35,13 +35,19 @@ std::size_t texel_of(const Vector3d& direction) {
 } // namespace
 
 TEST_CASE("a clear sky without its sun is smooth, a map with the sun in it is not") {
-  for (const double elevation : {5.0, 30.0, 60.0, 85.0})
-    CHECK(is_smooth(clear_sky(UpAxis::z, elevation)));
+  for (const double elevation : {5.0, 15.0, 30.0, 60.0, 85.0})
+    for (const double turbidity : {2.0, 3.0, 6.0}) {
+      CAPTURE(elevation, turbidity);
+      CHECK(is_smooth(clear_sky(UpAxis::z, elevation, turbidity)));
+    }
   RgbImage image = grey_image(256, 128, [](int, int) { return 1.0f; });
   CHECK(is_smooth(make_environment_map(image, sky_frame(UpAxis::z, 0.0), 1.0, "even")));
   for (std::size_t c = 0; c < 3; ++c)
     image.rgb[3 * (40 * 256 + 100) + c] = 1000.0f;
   CHECK_FALSE(is_smooth(make_environment_map(image, sky_frame(UpAxis::z, 0.0), 1.0, "with a sun")));
+  // A window of a sixteenth of all directions in the dark: the square's mean is sixteen times the mean's square.
+  const RgbImage window = grey_image(64, 32, [](int x, int y) { return x < 8 && y >= 8 && y < 16 ? 1.0f : 0.0f; });
+  CHECK_FALSE(is_smooth(make_environment_map(window, sky_frame(UpAxis::z, 0.0), 1.0, "window")));
 }
 
 TEST_CASE("the coarse map of a sky sends surfaces what the map sends") {
