@@ -12,7 +12,8 @@ struct MethodPlan {
 
 /// "directions" is taken where the V-map would ask more than this share of its rays: in scans a ray of the V-map, with
 /// what its traversal and the fast multipole method take, costs 2.2 to 3.2 of directions, in rooms 1.4, where 512
-/// directions have the smaller error. bench_methods measures both at equal error (docs/method/methods.md).
+/// directions have the smaller error. Measured without radiosity.share, by which fewer do: directions are rather taken
+/// late. bench_methods measures both at equal error (docs/method/methods.md).
 constexpr double dearer_factor = 0.3;
 
 /// Compares what the V-map would ask, from a sample of its questions, with points x settings.directions. Depends on the

@@ -29,9 +29,9 @@ typedef struct SkyTexel {
   float density;     /* bytes 12-15: with which sampling draws a direction in it [1/sr] */
 } SkyTexel;
 
-/* A map without bright spots has a coarse one beside it, SMOOTH_SKY_SIDE^2 texels of radiance on the octahedron |x| + |y| +
- * |z| = 1, which takes no arctangents to read: its upper half (z >= 0) in the square's middle, the lower half folded
- * out to its corners. */
+/* A map without bright spots has a coarse one beside it, SMOOTH_SKY_SIDE^2 texels of radiance on the octahedron |x| +
+ * |y| + |z| = 1, which takes no arctangents to read: its upper half (z >= 0) in the square's middle, the lower half
+ * folded out to its corners. */
 #define SMOOTH_SKY_SIDE 64
 
 #endif

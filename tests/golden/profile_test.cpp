@@ -81,8 +81,8 @@ TEST_CASE("profile measures, checks, tells and stores, and render uses what was 
   std::set<std::string> kernels;
   for (const auto& event : trace["traceEvents"])
     if (event.value("cat", "") == "kernel") kernels.insert(event["name"]);
-  CHECK(kernels == std::set<std::string>{"brute_force_closest", "segments_blocked", "shade_pixels", "trace_any_rays", "trace_closest_rays",
-                                         "trace_eye_rays", "trace_packets"});
+  CHECK(kernels == std::set<std::string>{"brute_force_closest", "segments_blocked", "shade_pixels", "trace_any_rays",
+                                         "trace_closest_rays", "trace_eye_rays", "trace_packets"});
   CHECK_THAT(contents(s.folder.file("out/profile.md")), Contains("| " + best + " |") && Contains("bytes a second"));
 
   // Whichever of the two was faster here, render takes it and says so.
