@@ -108,10 +108,8 @@ static inline float2 place_in_pixel(SampleId id, uint samples, bool jitter) {
 static inline float3 cosine_direction(float3 n, float u, float v) {
   float3 a, b;
   tangents(n, &a, &b);
-  const float r = sqrt(u);
-  float c, s;
-  COSINE_SINE(float, v, c, s);
-  return normalize3(r * c * a + r * s * b + sqrt(fmax(0.0f, 1.0f - u)) * n);
+  const float r = sqrt(u), phi = 6.2831853f * v;
+  return normalize3(r * cos(phi) * a + r * sin(phi) * b + sqrt(fmax(0.0f, 1.0f - u)) * n);
 }
 
 /* A direction of a cone about `axis`, unit, of sine^2 s2 of its half angle, or any direction where s2 >= 1; density 1 over
@@ -119,12 +117,10 @@ static inline float3 cosine_direction(float3 n, float u, float v) {
 static inline float3 cone_direction(float3 axis, float s2, float2 u, float* solid_angle) {
   const float height = s2 >= 1.0f ? 2.0f : s2 / (1.0f + sqrt(1.0f - s2)); /* 1 - cosine of the half angle */
   *solid_angle = 6.2831853f * height;
-  const float down = u.x * height, r = sqrt(fmax(0.0f, down * (2.0f - down)));
+  const float down = u.x * height, r = sqrt(fmax(0.0f, down * (2.0f - down))), phi = 6.2831853f * u.y;
   float3 a, b;
-  float c, s;
-  COSINE_SINE(float, u.y, c, s);
   tangents(axis, &a, &b);
-  return normalize3((1.0f - down) * axis + r * c * a + r * s * b);
+  return normalize3((1.0f - down) * axis + r * cos(phi) * a + r * sin(phi) * b);
 }
 
 /* Index of the first entry whose cumulative share exceeds u, for entries `stride` floats apart. */

@@ -15,8 +15,8 @@ static inline float3 load3_constant(const __constant float* p) { return (float3)
 static inline float3 normalize3(float3 v) { return v / sqrt(dot3(v, v)); }
 
 /* c and s become cosine and sine of 2 pi v, 0 <= v <= 1, within 2e-7; `type`: of all three, float or a vector of floats. The
- * built-in functions reduce angles of any size, which takes PoCL longer than the whole rest of a sample. About each quarter of
- * the turn these are the polynomials of Moshier's Cephes library for |x| <= pi/4. */
+ * built-in functions reduce angles of any size, which takes PoCL three times as long; a GPU's have fewer registers. For kernels
+ * that do little else. About each quarter of the turn these are the polynomials of Moshier's Cephes library for |x| <= pi/4. */
 #define COSINE_SINE(type, v, c, s)                                                                             \
   do {                                                                                                         \
     const type turn_quarter = floor(fma((type)(v), (type)(4.0f), (type)(0.5f)));                               \

@@ -23,10 +23,8 @@ static inline bool sample_emitter(POOL_PARAMS, const Surface* s, const __global 
   const float area = pool_point_texel(POINT_TEXELS * point + 2u).w;
   float3 a, b;
   tangents(normal.xyz, &a, &b);
-  const float r = sqrt(u.z * area * 0.31830989f);
-  float cosine_w, sine_w;
-  COSINE_SINE(float, u.w, cosine_w, sine_w);
-  float3 off = r * cosine_w * a + r * sine_w * b;
+  const float r = sqrt(u.z * area * 0.31830989f), phi = 6.2831853f * u.w;
+  float3 off = r * cos(phi) * a + r * sin(phi) * b;
 #ifdef HAS_CLIPS
   off = fold_into_clip(&emitters[i].clip, off);
 #endif

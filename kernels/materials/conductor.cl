@@ -35,10 +35,8 @@ static inline float3 ggx_visible_normal(float3 v, float alpha, float2 u) {
   const float length2 = stretched.x * stretched.x + stretched.y * stretched.y;
   const float3 t1 = length2 > 1e-12f ? (float3)(-stretched.y, stretched.x, 0.0f) / sqrt(length2) : (float3)(1.0f, 0.0f, 0.0f);
   const float3 t2 = cross(stretched, t1);
-  float c, s;
-  COSINE_SINE(float, u.y, c, s);
-  const float r = sqrt(u.x), p1 = r * c, half_way = 0.5f * (1.0f + stretched.z);
-  const float p2 = (1.0f - half_way) * sqrt(fmax(0.0f, 1.0f - p1 * p1)) + half_way * r * s;
+  const float r = sqrt(u.x), phi = 6.2831853f * u.y, p1 = r * cos(phi), half_way = 0.5f * (1.0f + stretched.z);
+  const float p2 = (1.0f - half_way) * sqrt(fmax(0.0f, 1.0f - p1 * p1)) + half_way * r * sin(phi);
   const float3 n = p1 * t1 + p2 * t2 + sqrt(fmax(0.0f, 1.0f - p1 * p1 - p2 * p2)) * stretched;
   return normalize3((float3)(alpha * n.x, alpha * n.y, fmax(n.z, 1e-6f)));
 }

@@ -23,11 +23,9 @@ static inline float phong_density(float cosine, float exponent) {
 static inline float3 phong_direction(float3 mirrored, float exponent, float u, float v) {
   float3 a, b;
   tangents(mirrored, &a, &b);
-  const float down = -expm1(log1p(-u) / (exponent + 1.0f));
+  const float down = -expm1(log1p(-u) / (exponent + 1.0f)), phi = 6.2831853f * v;
   const float sine = sqrt(fmax(0.0f, down * (2.0f - down)));
-  float c, s;
-  COSINE_SINE(float, v, c, s);
-  return normalize3(sine * c * a + sine * s * b + (1.0f - down) * mirrored);
+  return normalize3(sine * cos(phi) * a + sine * sin(phi) * b + (1.0f - down) * mirrored);
 }
 
 /* f cos / density / specular of such a direction, from its cosine with the surface's normal; 0 below the surface. */

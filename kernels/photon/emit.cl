@@ -40,10 +40,8 @@ static inline float2 stratified2(const __global EmissionBatch* batch, uint numbe
 static inline float3 disc_point(float3 axis, float radius, float u, float v) {
   float3 a, b;
   tangents(axis, &a, &b);
-  const float r = radius * sqrt(u);
-  float c, s;
-  COSINE_SINE(float, v, c, s);
-  return r * c * a + r * s * b;
+  const float r = radius * sqrt(u), phi = 6.2831853f * v;
+  return r * cos(phi) * a + r * sin(phi) * b;
 }
 
 /* Parallel light starts outside the root cube. */

@@ -6,9 +6,6 @@
 #endif
 #include "surface/own_surface.cl"
 
-/* COINCIDENT in lanes. */
-#define COINCIDENT_LANES(radii) clamp(0.01f * (radii), ROUNDING_OF_HITS, MOST_COINCIDENT)
-
 static inline lanes_i sheet_lanes(const BlockHits* h) { return (((lanes_u)(h->sheets) >> LANE_NUMBERS) & 1u) != 0u; }
 
 #ifdef HAS_CLIPS
@@ -39,7 +36,8 @@ static inline lanes_i lanes_of_end(float3 end_normal, float end_radius, float st
                                    lanes_i turned, const BlockHits* h) {
   const lanes_f own_cosine = cosines_of_lanes(h, end_normal);
   const lanes_f cosine = select(own_cosine, -own_cosine, turned);
-  const lanes_f coincident = COINCIDENT_LANES(end_radius + h->radius);
+  /* COINCIDENT in lanes */
+  const lanes_f coincident = clamp(0.01f * (end_radius + h->radius), ROUNDING_OF_HITS, MOST_COINCIDENT);
   return ((steepness * distance < SELF_HIT_REACH * (end_radius + h->radius)) & (cosine > SELF_HIT_COSINE)) |
          ((distance < coincident) & (cosine < -SELF_HIT_COSINE));
 }
@@ -57,8 +55,9 @@ static inline lanes_i discs_of_end(float3 end_normal, float end_radius, float st
   return own & ~(sheet_lanes(h) & (along < 0.0f) & (distance > ARRIVAL_DISTANCE * h->radius));
 }
 
-/* belongs_to_origin in lanes, where any material may be the origin's. */
-static inline lanes_i lanes_of_any_material(OcclusionEnds ends, float3 direction, const BlockHits* h) {
+#ifndef HAS_SPECULAR
+/* belongs_to_origin in lanes. */
+static inline lanes_i lanes_of_origin(OcclusionEnds ends, float3 direction, const BlockHits* h) {
   const lanes_i turned = turned_lanes(ends.origin_normal, ends.origin_radius, direction, h->t, h);
   const lanes_f own_along = cosines_of_lanes(h, direction);
   const lanes_f along = select(own_along, -own_along, turned);
@@ -66,19 +65,11 @@ static inline lanes_i lanes_of_any_material(OcclusionEnds ends, float3 direction
                       h) &
          ~apart_lanes(own_along, h->t, h) & ~((along < 0.0f) & (h->t > ARRIVAL_DISTANCE * h->radius));
 }
-
-#ifndef HAS_SPECULAR
-#define LANES_OF_ORIGIN(h, met) lanes_of_any_material(ends, ray.direction, h)
+#define LANES_OF_ORIGIN(h, met) lanes_of_origin(ends, ray.direction, h)
 #else
-/* belongs_to_origin of the lanes that are met. Blocks do not hold materials: where those matter, lanes are asked one after
- * another, only near the start of the ray, as nothing farther off belongs to it. */
+/* belongs_to_origin of the lanes that are met, one after another: few are, near the start of a ray, and blocks do not
+ * hold materials. */
 static inline lanes_i lanes_of_origin(POOL_PARAMS, OcclusionEnds ends, float3 direction, const BlockHits* h, lanes_i met) {
-  if (ends.origin_material == 0u)
-    return lanes_of_any_material(ends, direction, h);
-  const lanes_f radii = ends.origin_radius + h->radius;
-  met &= h->t < fmax(SELF_HIT_REACH * radii, COINCIDENT_LANES(radii));
-  if (!any_lane(met))
-    return (lanes_i)(0);
   float t_of[WIDE_LANES];
   uint belong = 0u; /* bit k: lane k does */
   store_lanes(select((lanes_f)(INFINITY), h->t, met), t_of);

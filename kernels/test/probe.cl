@@ -150,17 +150,17 @@ __kernel void probe_places(__global float2* places, uint samples, uint seed, uin
   }
 }
 
-/* found[i] = cosine and sine of 2 pi turns[i] as scalars, and as lanes of a vector. NDRange: count / 16, whole. */
-__kernel void probe_turn(const __global float* turns, __global float4* found) {
-  const uint first = 16u * (uint)get_global_id(0);
-  float16 c16, s16;
-  COSINE_SINE(float16, vload16(0, turns + first), c16, s16);
-  float c_lane[16], s_lane[16];
-  vstore16(c16, 0, c_lane);
-  vstore16(s16, 0, s_lane);
-  for (uint i = 0u; i < 16u; ++i) {
+/* scalars[i] = cosine and sine of 2 pi turns[i]; lanes[32 k] on: of 16 k to 16 k + 15 as vectors, cosines and then sines. NDRange:
+ * count / 16, whole. */
+__kernel void probe_turn(const __global float* turns, __global float2* scalars, __global float* lanes) {
+  const uint k = (uint)get_global_id(0);
+  float16 cosines, sines;
+  COSINE_SINE(float16, vload16(k, turns), cosines, sines);
+  vstore16(cosines, 2u * k, lanes);
+  vstore16(sines, 2u * k + 1u, lanes);
+  for (uint i = 16u * k; i < 16u * k + 16u; ++i) {
     float c, s;
-    COSINE_SINE(float, turns[first + i], c, s);
-    found[first + i] = (float4)(c, s, c_lane[i], s_lane[i]);
+    COSINE_SINE(float, turns[i], c, s);
+    scalars[i] = (float2)(c, s);
   }
 }

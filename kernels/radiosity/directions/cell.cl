@@ -16,6 +16,11 @@ static inline float3 direction_in_cell(float3 normal, float4 cell, uint point, u
   return normalize3((c * cell.x - s * cell.y) * a + (s * cell.x + c * cell.y) * b + cell.z * normal);
 #else
   const uint4 h = pcg4d((uint4)(point, k, 0x44495253u, seed));
-  return cosine_direction(normal, fma(unit_float(h.x), cell.y, cell.x), fma(unit_float(h.y), cell.w, cell.z));
+  const float u = fma(unit_float(h.x), cell.y, cell.x), v = fma(unit_float(h.y), cell.w, cell.z), r = sqrt(u);
+  float3 a, b;
+  tangents(normal, &a, &b);
+  float c, s; /* cosine_direction is the same by the built-in functions */
+  COSINE_SINE(float, v, c, s);
+  return normalize3(r * c * a + r * s * b + sqrt(fmax(0.0f, 1.0f - u)) * normal);
 #endif
 }
