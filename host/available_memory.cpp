@@ -1,8 +1,12 @@
 #include "host/available_memory.h"
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <sys/resource.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace pointgi {
 
@@ -57,6 +61,12 @@ std::optional<std::uint64_t> available_memory() {
 std::uint64_t process_peak_bytes() {
   rusage usage{};
   return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<std::uint64_t>(usage.ru_maxrss) * 1024u : 0;
+}
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 } // namespace pointgi

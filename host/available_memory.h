@@ -12,4 +12,8 @@ std::optional<std::uint64_t> available_memory();
 /// Most that this process has held in memory until now, bytes; 0 where the system does not tell.
 std::uint64_t process_peak_bytes();
 
+/// Gives what the program has freed back to the system, where the C library would keep it: threads have heaps of their
+/// own.
+void release_freed_memory();
+
 } // namespace pointgi

@@ -13,6 +13,7 @@ double StageLog::seconds() const {
 
 void StageLog::start(const std::string& name) {
   begin_stage(name);
+  release_freed_memory();
   StageRecord record;
   record.name = name;
   record.ran = true;
