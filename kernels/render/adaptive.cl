@@ -1,7 +1,9 @@
-/* Adaptive sampling: of a pixel in which nothing changes, few samples of a pass speak for all (method.md section 6). Which
- * pixels those are is told by what all eye rays of the pass meet, never by the light that a sample finds: samples of a
- * pixel are alike or they are not before any of them is shaded, so that the choice does not bias the mean.
- *   HAS_STORED_DIRECT  or no light is sampled at pixels at all; else no pixel is chosen */
+/* Adaptive sampling: of a pixel in which the surface does not change, few samples of a pass speak for all (method.md section
+ * 6): for all of their light where it is known at the points; else only for the surface and the light that is stored with
+ * it, and each sample asks for the rest by rays of its own. Which pixels those are is told by what all eye rays of the pass
+ * meet, never by the light that a sample finds: samples of a pixel are alike or they are not before any of them is shaded,
+ * so that the choice does not bias the mean.
+ *   HAS_CONES  no pixel is chosen */
 #include "lights/lights.cl"
 #include "render/eye_sample.cl"
 
@@ -12,12 +14,15 @@
 /* One sample of each cell of this many columns and rows is shaded. */
 #define CELL_COLUMNS 2u
 #define CELL_ROWS 2u
+#define CELLS (CELL_COLUMNS * CELL_ROWS)
+
+/* What two samples of a pixel have in common, bits. */
+#define ALIKE_SURFACE 1u /* what their eye rays meet */
+#define ALIKE_LIGHT 2u   /* and all light there, which no ray is needed to find */
 
 /* Whether all light of the disc is known without rays of the pixel's own. */
 static inline bool needs_no_rays(POOL_PARAMS, Lights lights, uint splat) {
-#if defined(HAS_CONES)
-  return false;
-#elif defined(HAS_LIGHT)
+#ifdef HAS_LIGHT
 #ifdef HAS_STORED_DIRECT
   const float3 sky = load3_constant(lights.params->environment);
   const bool has_sky = lights.params->sky_at_points == 0u && (sky.x > 0.0f || sky.y > 0.0f || sky.z > 0.0f);
@@ -31,41 +36,63 @@ static inline bool needs_no_rays(POOL_PARAMS, Lights lights, uint splat) {
 #endif
 }
 
-/* Whether a sample finds about what another one does, `splat` and `first` being what their eye rays meet first. */
-static inline bool is_alike(POOL_PARAMS, Lights lights, uint splat, uint first) {
+/* What a sample has in common with another one, `splat` and `first` being what their eye rays meet first. */
+static inline uint alike(POOL_PARAMS, Lights lights, uint splat, uint first) {
+#ifdef HAS_CONES
+  return 0u;
+#endif
   if (splat == NO_SPLAT || first == NO_SPLAT) {
 #ifdef HAS_SKY_MAP
-    return false;
+    return 0u;
 #else
-    return splat == first;
+    return splat == first ? ALIKE_SURFACE | ALIKE_LIGHT : 0u;
 #endif
   }
   const float4 normal = pool_point_texel(POINT_TEXELS * splat + 1u), normal0 = pool_point_texel(POINT_TEXELS * first + 1u);
-  const __global Material* material = lights.materials + (uint)normal.w;
 #ifdef HAS_SPECULAR
-  if (has_flag(material, MATERIAL_SPECULAR | MATERIAL_HAS_LOBE | MATERIAL_TRANSMITS))
-    return false;
+  if (has_flag(lights.materials + (uint)normal.w, MATERIAL_SPECULAR | MATERIAL_HAS_LOBE | MATERIAL_TRANSMITS))
+    return 0u;
 #endif
-  if (!needs_no_rays(POOL_ARGS, lights, splat))
-    return false;
-  if (splat == first)
-    return true;
-  const float4 centre = pool_point_texel(POINT_TEXELS * splat), centre0 = pool_point_texel(POINT_TEXELS * first);
-  const float3 apart = fabs(pool_point_texel(POINT_TEXELS * splat + 2u).xyz - pool_point_texel(POINT_TEXELS * first + 2u).xyz);
-  return normal.w == normal0.w && dot3(normal.xyz, normal0.xyz) > ALIKE_COSINE &&
-         fabs(dot3(normal0.xyz, centre.xyz - centre0.xyz)) < 0.5f * (centre.w + centre0.w) &&
-         fmax(fmax(apart.x, apart.y), apart.z) < ALIKE_ALBEDO;
+  if (splat != first) {
+    const float4 centre = pool_point_texel(POINT_TEXELS * splat), centre0 = pool_point_texel(POINT_TEXELS * first);
+    const float3 apart = fabs(pool_point_texel(POINT_TEXELS * splat + 2u).xyz - pool_point_texel(POINT_TEXELS * first + 2u).xyz);
+    if (normal.w != normal0.w || !(dot3(normal.xyz, normal0.xyz) > ALIKE_COSINE) ||
+        !(fabs(dot3(normal0.xyz, centre.xyz - centre0.xyz)) < 0.5f * (centre.w + centre0.w)) ||
+        !(fmax(fmax(apart.x, apart.y), apart.z) < ALIKE_ALBEDO))
+      return 0u;
+  }
+  return needs_no_rays(POOL_ARGS, lights, splat) ? ALIKE_SURFACE | ALIKE_LIGHT : ALIKE_SURFACE;
 }
+
+/* Who speaks for a sample. */
+typedef struct Speaker {
+  uint lane; /* of the sample that does */
+  uint cell; /* both are of, of CELL_COLUMNS x CELL_ROWS */
+} Speaker;
 
 /* The sample of the pass that speaks for sample `lane` in such a pixel: one of its cell, drawn anew for every pixel, pass and
  * cell. Passes that are no grid of at least CELL_COLUMNS x CELL_ROWS are shaded whole. */
-static inline uint speaker_of(SampleId id, uint samples, uint lane) {
+static inline Speaker speaker_of(SampleId id, uint samples, uint lane) {
   const PixelPass pass = pixel_pass(id, samples, false);
+  Speaker speaker = {lane, 0u};
   if (pass.taken.x != 0u || pass.strata.x < CELL_COLUMNS || pass.strata.y < CELL_ROWS)
-    return lane;
+    return speaker;
   const uint2 cell = (uint2)(pass.strata.x / CELL_COLUMNS, pass.strata.y / CELL_ROWS); /* strata of a cell */
   const uint2 at = (uint2)(lane % pass.strata.x / cell.x, lane / pass.strata.x / cell.y);
-  const uint4 h = pcg4d((uint4)(id.pixel.x, id.pixel.y, 0x41444150u + id.sample / GRID_RAYS,
-                                id.seed * 0x9E3779B9u + CELL_COLUMNS * at.y + at.x));
-  return (at.y * cell.y + h.y % cell.y) * pass.strata.x + at.x * cell.x + h.x % cell.x;
+  speaker.cell = CELL_COLUMNS * at.y + at.x;
+  const uint4 h = pcg4d((uint4)(id.pixel.x, id.pixel.y, 0x41444150u + id.sample / GRID_RAYS, id.seed * 0x9E3779B9u + speaker.cell));
+  speaker.lane = (at.y * cell.y + h.y % cell.y) * pass.strata.x + at.x * cell.x + h.x % cell.x;
+  return speaker;
+}
+
+/* The surface that one sample found, at the place where another one's eye ray meets its plane. */
+static inline Surface surface_at(Surface s, Ray ray) {
+  const float along = dot3(s.normal, ray.direction);
+  const float t = dot3(s.normal, s.position - ray.origin) / along;
+  /* Along a plane that is seen from its edge the place would run away. */
+  if (fabs(t - s.t) < s.radius) {
+    s.t = t;
+    s.position = fma((float3)(t), ray.direction, ray.origin);
+  }
+  return s;
 }

@@ -96,9 +96,11 @@ static inline void add_first_surface(Lights lights, Ray ray, float t_start, cons
 }
 
 /* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
- * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
+ * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. *eye
+ * becomes what the ray meets, unless it is known: then only direct light and rays are added, and no ray goes on. */
 ALWAYS_INLINE
-static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
+static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, EyeSurface* eye,
+                              float* sums) {
   uint point = FILM_NO_POINT;
   float3 throughput = (float3)(1.0f);
   OcclusionEnds ends = free_ends();
@@ -114,7 +116,13 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), specular = (float3)(0.0f), caustic = (float3)(0.0f);
     bool goes_on = false;
     sums[FILM_RAYS] += 1.0f;
-    const bool met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
+    bool met = eye->is_known;
+    if (met)
+      s = eye->surface;
+    else
+      met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
+    if (bounces == 0u)
+      eye->surface = s;
     if (met) {
       const __global Material* material = lights.materials + s.material;
       media = media_before(media, &s, lights.materials);
@@ -132,7 +140,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #endif
         if (reflects_by_cone(material))
           specular += reflection_by_cone(POOL_ARGS, lights, &s, ray.direction);
-        if (has_flag(material, MATERIAL_REFLECTS_DIFFUSELY)) {
+        if (has_flag(material, MATERIAL_REFLECTS_DIFFUSELY) && !eye->is_known) {
 #ifdef HAS_RADIOSITY
           diffuse = s.albedo * INVERSE_PI * irradiance_from_surfaces(POOL_ARGS, &s, id);
 #endif
@@ -147,7 +155,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     add_emission(bounces == 0u ? throughput * seen : (float3)(0.0f), sums);
 #endif
     add_seen(throughput * direct, throughput * diffuse, throughput * specular, throughput * caustic, bounces == 0u, sums);
-    if (met && bounces < most && !reflects_by_cone(lights.materials + s.material))
+    if (met && !eye->is_known && bounces < most && !reflects_by_cone(lights.materials + s.material))
       goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);
     /* No longest survival: what loses nothing goes on for MOST_EYE_BOUNCES. */
     if (!goes_on || !throughput_after(id, bounces, 1.0f, scatter.weight, &throughput))
