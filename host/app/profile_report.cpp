@@ -14,7 +14,8 @@ constexpr const char* bytes_defined =
     "once, over its seconds; what caches save or repeat is not in it";
 constexpr const char* before_its_turn = "interrupted before their turn";
 constexpr const char* ties_defined =
-    "ties: rays that find another splat at exactly the same distance, which trees of another order may";
+    "ties: rays that find another splat at exactly the same distance, which trees of another order may, and photons "
+    "that therefore pass by what they were aimed at, or no longer do";
 constexpr const char* order_defined =
     "sorted by the picture's speed: the reference's seconds for the same rows over the variant's, median of the rounds";
 
@@ -33,6 +34,12 @@ std::string number(double value, const char* format = "%.2f") {
   return text;
 }
 
+/// What the kernel answers about, in words.
+std::string answers_of(ProfiledKernel kernel) {
+  const bool rays = kernel != ProfiledKernel::segments && kernel != ProfiledKernel::photons;
+  return name_of(kernel) + std::string(rays ? " rays" : "");
+}
+
 /// Why a variant is not in the ranking; empty when it is.
 std::string excluded(const VariantProfile& v) {
   if (!v.failure.empty()) return "failed: " + v.failure;
@@ -43,8 +50,8 @@ std::string excluded(const VariantProfile& v) {
         text += " " + std::to_string(v.kernels[k].wrong) +
                 (static_cast<ProfiledKernel>(k) == ProfiledKernel::render
                      ? " of the picture's eye rays and pixels differ,"
-                     : " of " + std::to_string(v.kernels[k].rays) + " " + name_of(static_cast<ProfiledKernel>(k)) +
-                           (static_cast<ProfiledKernel>(k) == ProfiledKernel::segments ? " differ," : " rays differ,"));
+                     : " of " + std::to_string(v.kernels[k].rays) + " " + answers_of(static_cast<ProfiledKernel>(k)) +
+                           " differ,");
     text.back() = ' ';
     return text + "from the reference";
   }
@@ -71,8 +78,8 @@ std::string remarks(const VariantProfile& v) {
 using Row = std::vector<std::string>;
 
 const Row& heads() {
-  static const Row row{"",        "variant", "x ref",    "spread",    "render Mrays/s", "GB/s", "eye Mrays/s",
-                       "bounced", "any",     "segments", "pools MiB", "remarks"};
+  static const Row row{"",        "variant", "x ref",    "spread",  "render Mrays/s", "GB/s",   "eye Mrays/s",
+                       "bounced", "any",     "segments", "photons", "pools MiB",      "remarks"};
   return row;
 }
 
@@ -86,6 +93,7 @@ double rated(const VariantProfile& v, const VariantProfile& reference, ProfiledK
 Row row_of(const VariantProfile& v, const VariantProfile& reference, std::size_t rank) {
   const KernelProfile& render = kernel_of(v, ProfiledKernel::render);
   const auto mrays = [&](ProfiledKernel kernel) {
+    if (kernel_of(v, kernel).skipped) return std::string("-");
     return number(1e-6 * rated(v, reference, kernel) * static_cast<double>(kernel_of(v, kernel).rays));
   };
   const auto [least, most] = std::minmax_element(render.speedup.begin(), render.speedup.end());
@@ -99,6 +107,7 @@ Row row_of(const VariantProfile& v, const VariantProfile& reference, std::size_t
           mrays(ProfiledKernel::bounced),
           mrays(ProfiledKernel::any),
           mrays(ProfiledKernel::segments),
+          mrays(ProfiledKernel::photons),
           number(static_cast<double>(v.pool_bytes) / 1048576.0, "%.1f"),
           remarks(v)};
 }
@@ -123,6 +132,11 @@ std::vector<std::string> rest_of(const ProfileReport& report) {
   for (const TraversalVariant& v : report.invalid)
     lines.push_back(name_of(v) + ": not valid here: " + why_not(v, report.device));
   return lines;
+}
+
+/// What the scene had nothing for; empty where it had work for all kernels.
+std::string skipped_text(const Profile& profile) {
+  return profile.without_photons.empty() ? "" : "photons: not measured: " + profile.without_photons;
 }
 
 std::string conclusion(const ProfileReport& report) {
@@ -164,6 +178,7 @@ std::string profile_table(const ProfileReport& report) {
   }
   for (const std::string& line : rest_of(report))
     text += line + "\n";
+  if (const std::string skipped = skipped_text(report.profile); !skipped.empty()) text += skipped + "\n";
   return text + "x ref: times the reference's speed, the picture; " + ties_defined + "\n" + conclusion(report);
 }
 
@@ -182,11 +197,13 @@ std::string profile_markdown(const ProfileReport& report) {
   if (!rest.empty()) text += "\n## Not ranked\n\n";
   for (const std::string& entry : rest)
     text += "* " + entry + "\n";
-  return text + "\n" + conclusion(report) + "\n* " + order_defined + "; spread: its least and most\n* " +
-         bytes_defined + "\n* " + ties_defined +
+  const std::string skipped = skipped_text(report.profile);
+  return text + "\n" + conclusion(report) + (skipped.empty() ? "" : "\n* " + skipped) + "\n* " + order_defined +
+         "; spread: its least and most\n* " + bytes_defined + "\n* " + ties_defined +
          "\n* eye: nearest hits of coherent rays, 8x4 a pixel; bounced: of cosine rays off random splats; any: whether "
-         "these hit anything; segments: whether anything stands between two splats, as the V-map asks; render: the "
-         "picture's middle rows, eye and shadow rays\n";
+         "these hit anything; segments: whether anything stands between two splats, as the V-map asks; photons: of "
+         "the lights, by way of specular surfaces to where they end; render: the picture's middle rows, eye and shadow "
+         "rays\n";
 }
 
 namespace {
@@ -215,7 +232,7 @@ nlohmann::json measured_json(const VariantProfile& v) {
                      {"approximate", v.variant.fast_math},
                      {"pool_bytes", v.pool_bytes}};
   for (std::size_t k = 0; k < profiled_kernels; ++k)
-    out["kernels"][name_of(static_cast<ProfiledKernel>(k))] = kernel_json(v.kernels[k]);
+    if (!v.kernels[k].skipped) out["kernels"][name_of(static_cast<ProfiledKernel>(k))] = kernel_json(v.kernels[k]);
   return out;
 }
 
@@ -240,6 +257,8 @@ nlohmann::json profile_json(const ProfileReport& report, const StageLog& stages)
       {"reference", name_of(reference_variant())},
       {"definitions", {{"order", order_defined}, {"bytes_per_s", bytes_defined}}},
       {"seconds", stages.seconds()}};
+  out["skipped"] = nlohmann::json::object();
+  if (!p.without_photons.empty()) out["skipped"][name_of(ProfiledKernel::photons)] = p.without_photons;
   const auto window = [](const PixelWindow& w) { return nlohmann::json{w.x0, w.x1, w.y0, w.y1}; };
   out["windows"] = {{"eye", window(p.eye_window)}, {"render", window(p.render_window)}};
   const VariantProfile* winner = p.winner();

@@ -1,4 +1,5 @@
 #include "host/passes/variant.h"
+#include "shared/fmm_types.h"
 #include <algorithm>
 
 namespace pointgi {
@@ -182,8 +183,16 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
                  group_options({}) + feature_options(features) + (some_paths ? " -D PATH_CLASSES" : ""));
 }
 
-Program fmm_program(const char* file) {
-  return {file, ""};
+Program fmm_program(const char* file, unsigned lanes) {
+  return {file, lanes == FMM_LANES ? "" : "-D FMM_ITEM_LANES=" + std::to_string(lanes)};
+}
+
+unsigned fmm_lanes_on(const DeviceInfo& device) {
+  return device.is_cpu ? FMM_LANES : 1;
+}
+
+std::size_t fmm_items_on(const DeviceInfo& device) {
+  return FMM_LANES / fmm_lanes_on(device);
 }
 
 Program cones_program(const char* file, unsigned texels) {

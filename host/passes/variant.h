@@ -103,8 +103,13 @@ Program sky_program(bool hemicube, bool map);
 /// are measured by. `some_paths`: params.path_states leaves some out.
 Program path_program(const TraversalVariant& variant, const SceneFeatures& features, bool some_paths);
 
-/// Radiosity: a file of kernels/radiosity/fmm or kernels/radiosity/direct; nothing in it depends on the traversal.
-Program fmm_program(const char* file);
+/// Radiosity: a file of kernels/radiosity whose work-items take `lanes` of a block of FMM_LANES nodes or points, all or
+/// 1; nothing in it depends on the traversal.
+Program fmm_program(const char* file, unsigned lanes);
+/// What suits the device: all where a work-item has vector registers of its own, as on CPU devices, else 1.
+unsigned fmm_lanes_on(const DeviceInfo& device);
+/// Work-items that a block has there.
+std::size_t fmm_items_on(const DeviceInfo& device);
 /// Voxel cone tracing: a file of kernels/radiosity/cones. `texels`: of a voxel; 0 for voxelise.cl, which does not ask.
 Program cones_program(const char* file, unsigned texels = 0);
 

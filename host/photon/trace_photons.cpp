@@ -1,6 +1,6 @@
 #include "host/photon/trace_photons.h"
 #include "host/cl/batches.h"
-#include "host/passes/device_lights.h"
+#include "host/cloud/normal_field.h"
 #include "host/passes/visibility.h"
 #include "host/photon/diffuse_photons.h"
 #include "host/photon/kept_photons.h"
@@ -11,7 +11,7 @@ namespace pointgi {
 namespace {
 
 /// Photons of the first launch, of which nothing is known yet, and of any: 16 MiB of flights.
-constexpr std::size_t first_batch = 1u << 12, most_at_once = 1u << 18, group = 64;
+constexpr std::size_t first_batch = 1u << 12, most_at_once = 1u << 18;
 
 void add(const float power[3], std::array<double, 3>& to) {
   for (std::size_t c = 0; c < 3; ++c)
@@ -55,21 +55,6 @@ void add_to_ledger(const PhotonFlight& flight, std::uint32_t number, PhotonLedge
   }
 }
 
-/// Whether photons set out in directions of the environment's map.
-bool from_map(const PhotonRequest& request) {
-  return request.lighting.sky != nullptr && request.sources.has_environment();
-}
-
-SceneFeatures features_of(const PhotonRequest& request) {
-  const DeviceLighting& lighting = request.lighting;
-  SceneFeatures features;
-  features.sky_map = from_map(request);
-  features.lights = lighting.light_types;
-  features.materials = lighting.material_types;
-  features.material_flags = lighting.flags;
-  return features;
-}
-
 /// Of the light that a splat receives, on both sides together where it has two, about how much goes on by mirror or
 /// lobe.
 double passed_on(const Material& material) {
@@ -101,24 +86,7 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
                             const FlightControl& control) {
   TracedPhotons traced;
   if (request.plan.photons == 0) return traced;
-  const Program program =
-      trace_photons_program(request.variant, features_on(session.info(), features_of(request)), request.start);
-  cl::Kernel kernel = session.kernel(program.file, program.options, "trace_photons");
-  RenderParams params = request.lighting.params;
-  params.seed += request.flight * 0x9e3779b9u;
-  params.step_delta = static_cast<float>(request.variant.step_delta / request.side);
-  std::copy_n(request.sources.environment.begin(), 3, params.environment);
-  params.light_sources = static_cast<pg_uint>(request.sources.light_sources.size());
-  params.emitters = static_cast<pg_uint>(request.sources.emitters.size());
-  DeviceLights lights = upload_lights(session, request.lighting, params, from_map(request));
-  lights.light_sources = session.upload(request.sources.light_sources);
-  lights.emitters = session.upload(request.sources.emitters);
-  const auto radiance = session.upload(request.sources.radiance);
-  const auto batches = session.upload(request.plan.batches);
-  const auto leaves = session.upload(request.leaves.leaves);
-  const auto splats = session.upload(request.leaves.splats);
-  const auto leaf_of = session.upload(request.leaves.leaf_of);
-  const std::size_t photons = request.plan.photons;
+  DeviceFlight flight(session, pools, request);
   Pace pace = request.batch > 0 ? Pace(static_cast<double>(request.batch), request.batch, request.batch)
                                 : Pace(first_batch, busy_work_items(session.info()), most_at_once);
   Buffer<PhotonFlight> flights;
@@ -128,17 +96,14 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
       flights = {};
       flights = session.allocate<PhotonFlight>(count);
     }
-    const double seconds = session.launch(
-        kernel, LaunchShape::line(count, group), pools.nodes, pools.leaves, pools.points, request.normal_field,
-        lights.arguments(), radiance, batches, leaves, splats, leaf_of, flights,
-        static_cast<cl_uint>(request.plan.batches.size()), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
+    const double seconds = flight.launch(flights, first, count);
     traced.ledger.device_seconds += seconds;
     auto number = static_cast<std::uint32_t>(first);
-    for (const PhotonFlight& flight : session.download(flights, count))
-      add_to_ledger(flight, number++, traced.ledger, kept);
+    for (const PhotonFlight& ended : session.download(flights, count))
+      add_to_ledger(ended, number++, traced.ledger, kept);
     return seconds;
   };
-  if (for_each_batch(EqualItems{photons}, pace, {control.stop, control.progress}, launch) < photons) {
+  if (for_each_batch(EqualItems{flight.photons()}, pace, {control.stop, control.progress}, launch) < flight.photons()) {
     traced.stopped = true;
     return traced;
   }
@@ -160,13 +125,21 @@ PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points)
   return sources;
 }
 
-TracedPhotons send_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
-                           const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
-                           const Buffer<cl_float4>& normal_field, const CausticSettings& settings, double side,
-                           const FlightControl& control) {
+std::string reason_against_photons(const DeviceLighting& lighting, const CausticSettings& settings) {
+  if (!lighting.has_specular()) return "no specular material";
+  if (!lighting.has_light()) return "the scene has no light and no emission";
+  if (settings.photons == 0) return "caustics.photons = 0";
+  return {};
+}
+
+AimedPhotons aim_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                         const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
+                         const CausticSettings& settings, double side) {
+  AimedPhotons aimed;
   const bool equal_power = settings.power == "equal";
+  aimed.start = equal_power ? PhotonStart::equal_power : PhotonStart::aimed;
   const std::size_t lights = sources.light_sources.size() + 2;
-  const SpecularLeaves leaves = specular_leaves(points, is_specular(lighting), most_photon_pairs / lights, equal_power);
+  aimed.leaves = specular_leaves(points, is_specular(lighting), most_photon_pairs / lights, equal_power);
   const auto ask = [&](View<Splat> table, View<Segment> segments) {
     const auto step_delta = static_cast<float>(variant.step_delta / side);
     return DeviceVisibility(session, pools, variant, table, step_delta).blocked(segments);
@@ -175,9 +148,25 @@ TracedPhotons send_photons(Session& session, const DevicePools& pools, const Tra
   options.photons = static_cast<std::uint64_t>(settings.photons);
   options.equal_power = equal_power;
   options.seed = lighting.params.seed;
-  const EmissionPlan plan = plan_emission(leaves, points, sources, ask, options);
-  const PhotonStart start = equal_power ? PhotonStart::equal_power : PhotonStart::aimed;
-  return trace_photons(session, pools, {lighting, sources, leaves, plan, normal_field, variant, side, start}, control);
+  aimed.plan = plan_emission(aimed.leaves, points, sources, ask, options);
+  return aimed;
+}
+
+std::vector<cl_float4> normal_field_texels(const DeviceLighting& lighting, View<Splat> points) {
+  const auto slopes = fit_normal_field(points, is_specular(lighting));
+  std::vector<cl_float4> texels(slopes.size());
+  for (std::size_t i = 0; i < slopes.size(); ++i)
+    std::copy_n(slopes[i].slope, 4, texels[i].s);
+  return texels;
+}
+
+TracedPhotons send_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                           const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
+                           const Buffer<cl_float4>& normal_field, const CausticSettings& settings, double side,
+                           const FlightControl& control) {
+  const AimedPhotons aimed = aim_photons(session, pools, variant, lighting, sources, points, settings, side);
+  return trace_photons(
+      session, pools, {lighting, sources, aimed.leaves, aimed.plan, normal_field, variant, side, aimed.start}, control);
 }
 
 TracedPhotons send_photons_from_surfaces(Session& session, const DevicePools& pools, const TraversalVariant& variant,

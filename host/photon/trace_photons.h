@@ -1,8 +1,7 @@
 #pragma once
 /// The photon stage: photons from the lights by way of specular surfaces to diffuse ones (method.md §5).
-#include "host/passes/device_pools.h"
+#include "host/photon/device_flight.h"
 #include "host/photon/device_photon_map.h"
-#include "host/photon/emission_plan.h"
 #include "host/scene/lighting.h"
 #include <functional>
 
@@ -39,25 +38,30 @@ struct FlightControl {
   std::size_t most_stored = most_stored_photons; ///< at least 1; where more are stored, one of 2, 4, ... is kept
 };
 
-struct PhotonRequest {
-  const DeviceLighting& lighting; ///< materials, seed, most bounces
-  const PhotonSources& sources;
-  const SpecularLeaves& leaves;
-  const EmissionPlan& plan;
-  const Buffer<cl_float4>& normal_field;
-  TraversalVariant variant;
-  double side = 1.0; ///< of the root cube, world units
-  PhotonStart start = PhotonStart::aimed;
-  std::size_t batch = 0;    ///< photons a launch; 0: found by the launches' times
-  std::uint32_t flight = 0; ///< photons of other flights have other random numbers
-};
-
 /// The same photons, and of too many the same ones kept, however they are cut into launches. Throws Error(device).
 TracedPhotons trace_photons(Session& session, const DevicePools& pools, const PhotonRequest& request,
                             const FlightControl& control);
 
 /// The lights of the scene as sources. `points`: of the pool.
 PhotonSources photon_sources(const DeviceLighting& lighting, View<Splat> points);
+
+/// Why no light of a scene flies by way of specular splats; empty where it does.
+std::string reason_against_photons(const DeviceLighting& lighting, const CausticSettings& settings);
+
+/// What photons are aimed at, and how many at each.
+struct AimedPhotons {
+  SpecularLeaves leaves;
+  EmissionPlan plan;
+  PhotonStart start = PhotonStart::aimed;
+};
+
+/// As send_photons has them.
+AimedPhotons aim_photons(Session& session, const DevicePools& pools, const TraversalVariant& variant,
+                         const DeviceLighting& lighting, const PhotonSources& sources, View<Splat> points,
+                         const CausticSettings& settings, double side);
+
+/// Slopes of the normals of the specular splats among `points`, as kernels of specular surfaces take them.
+std::vector<cl_float4> normal_field_texels(const DeviceLighting& lighting, View<Splat> points);
 
 /// Leaves, plan and flight: the photons of `sources` by way of the specular splats among `points`, the pool's.
 /// `photons`, `power`: of `settings`. Throws as trace_photons.

@@ -41,7 +41,7 @@ DeviceFmm::Rows DeviceFmm::upload(const SourceLists& lists) {
 
 DeviceFmm::Jobs DeviceFmm::make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs) {
   Jobs jobs;
-  jobs.pace = Pace(first_pairs, busy_work_items(session_.info()));
+  jobs.pace = Pace(first_pairs, busy_work_items(session_.info()) / fmm_items_on(session_.info()));
   jobs.items = session_.upload(items);
   jobs.cost.assign(1, 0.0);
   for (const double cost : costs)
@@ -140,7 +140,7 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
   local_ = session_.allocate<cl_float>(FMM_VALUES * static_cast<std::size_t>(nodes_));
   irradiance_ = session_.allocate<cl_float>(3 * static_cast<std::size_t>(stride_));
   const auto kernel = [&](const char* file, const char* name) {
-    const Program program = fmm_program(file);
+    const Program program = fmm_program(file, fmm_lanes_on(session_.info()));
     return session_.kernel(program.file, program.options, name);
   };
   p2m_ = kernel("radiosity/fmm/expand.cl", "p2m");
@@ -154,8 +154,8 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
 template <class Launch>
 void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
   for_each_batch(WeighedItems{jobs.cost}, jobs.pace, {}, [&](std::size_t first, std::size_t count) {
-    const double seconds =
-        launch(LaunchShape::line(count, group_), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
+    const double seconds = launch(LaunchShape::line(count * fmm_items_on(session_.info()), group_),
+                                  static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     device_seconds_ += seconds;
     return seconds;
   });

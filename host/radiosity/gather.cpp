@@ -70,7 +70,8 @@ DeviceGather::DeviceGather(Session& session, const DevicePools& pools, const Tra
   trace_ = session.kernel(tracing.file, tracing.options, "senders_visible");
   const bool picked = is_monte_carlo(options);
   const Program summing =
-      fmm_program(picked ? "radiosity/gather/receive_picked.cl" : "radiosity/gather/receive_from_senders.cl");
+      fmm_program(picked ? "radiosity/gather/receive_picked.cl" : "radiosity/gather/receive_from_senders.cl",
+                  fmm_lanes_on(session.info()));
   receive_ = session.kernel(summing.file, summing.options, picked ? "receive_from_picked" : "receive_from_senders");
   if (options.sampling == GatherSampling::adaptive) {
     const std::vector<double> even(3 * points_.size(), 1.0);
@@ -125,7 +126,8 @@ void DeviceGather::make_bands() {
   }
   const double row_pairs = static_cast<double>(FMM_LANES) * sender_count_;
   trace_pace_ = Pace(first_pairs / row_pairs, 1);
-  receive_pace_ = Pace(100.0 * first_pairs / row_pairs, busy_work_items(session_.info()));
+  receive_pace_ =
+      Pace(100.0 * first_pairs / row_pairs, busy_work_items(session_.info()) / fmm_items_on(session_.info()));
 }
 
 SenderRows DeviceGather::launch_of(const Band& band, std::size_t first, std::size_t rows, unsigned pass) const {
@@ -167,7 +169,7 @@ void DeviceGather::trace(Band& band, unsigned pass) {
 void DeviceGather::receive(const Band& band, unsigned pass, const Buffer<cl_float>& flux) {
   const std::size_t group = session_.info().is_cpu ? 8 : 32;
   for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t count) {
-    const LaunchShape shape = LaunchShape::line(count, group);
+    const LaunchShape shape = LaunchShape::line(count * fmm_items_on(session_.info()), group);
     const SenderRows at = launch_of(band, first, count, pass);
     if (is_monte_carlo(options_))
       return session_.launch(receive_, shape, at, band.seen, device_windows_, members_, point_planes_, flux,

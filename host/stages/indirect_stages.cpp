@@ -1,6 +1,6 @@
 #include "host/stages/indirect_stages.h"
-#include "host/cloud/normal_field.h"
 #include "host/error.h"
+#include "host/photon/trace_photons.h"
 #include "host/run.h"
 #include "host/stages/require_memory.h"
 #include "host/stages/stage_watch.h"
@@ -102,14 +102,9 @@ std::optional<Buffer<cl_float4>> normal_field_of(Session& session, const DeviceL
     return session.upload(std::vector<cl_float4>(1));
   }
   stages.start("normals");
-  const auto slopes = fit_normal_field(points, [&](const Splat& splat) {
-    return (lighting.materials[static_cast<std::size_t>(splat.material)].flags & MATERIAL_SPECULAR) != 0;
-  });
-  std::vector<cl_float4> texels(slopes.size());
-  for (std::size_t i = 0; i < slopes.size(); ++i)
-    std::copy_n(slopes[i].slope, 4, texels[i].s);
+  const std::vector<cl_float4> texels = normal_field_texels(lighting, points);
   Buffer<cl_float4> field = session.upload(texels);
-  stages.finish(slopes.size(), "points");
+  stages.finish(texels.size(), "points");
   return field;
 }
 

@@ -15,11 +15,8 @@ constexpr double default_radius = 0.05;
 
 /// Empty when photons are sent.
 std::string reason_against(const IndirectRequest& request, bool specular) {
-  if (!specular) return "no specular material";
-  if (request.by_paths) return "the path tracer makes the picture";
-  if (!request.lighting.has_light()) return "the scene has no light and no emission";
-  if (request.scene.caustics.photons == 0) return "caustics.photons = 0";
-  return {};
+  if (request.by_paths && specular) return "the path tracer makes the picture";
+  return reason_against_photons(request.lighting, request.scene.caustics);
 }
 
 /// Photons that a flight may add to those that are there: where others may follow, half of what memory is left for.

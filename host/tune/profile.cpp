@@ -8,13 +8,13 @@
 namespace pointgi {
 
 const char* name_of(ProfiledKernel kernel) {
-  static constexpr const char* names[profiled_kernels] = {"eye", "bounced", "any", "segments", "render"};
+  static constexpr const char* names[profiled_kernels] = {"eye", "bounced", "any", "segments", "photons", "render"};
   return names[static_cast<std::size_t>(kernel)];
 }
 
 bool VariantProfile::complete() const {
-  return failure.empty() &&
-         std::all_of(kernels.begin(), kernels.end(), [](const KernelProfile& k) { return !k.seconds.empty(); });
+  return failure.empty() && std::all_of(kernels.begin(), kernels.end(),
+                                        [](const KernelProfile& k) { return k.skipped || !k.seconds.empty(); });
 }
 
 bool VariantProfile::wrong() const {
@@ -66,6 +66,10 @@ struct Measured {
 /// Equal for launches that do the same work.
 std::string launch_key(ProfiledKernel kernel, const TraversalVariant& v) {
   const bool picture = kernel == ProfiledKernel::render;
+  // Photons go in work-groups of one size, whatever the variant's.
+  if (kernel == ProfiledKernel::photons)
+    return std::string(name_of(kernel)) + "|" + trace_photons_program(v, {}, PhotonStart::aimed).options + "|" +
+           pools_key(v);
   const std::string options = picture ? eye_rays_program(v).options + shade_program(v, {}).options
                               : kernel == ProfiledKernel::segments ? segments_program(v).options
                                                                    : trace_program(v).options;
@@ -79,12 +83,15 @@ public:
   Profiler(Session& session, const ProfileRequest& request, const std::function<void(double)>& progress,
            const std::function<bool()>& stop)
       : bench_(session, request), request_(request), progress_(progress), stop_(stop), reference_(reference_variant()) {
-    list_variants();
+    reference_.max_depth = request_.scene.octree.max_depth;
+    reference_.clips = !request_.clips.empty();
+    reference_.patches = !request_.bends.empty();
   }
 
   Profile run() {
     reference_pools_ = bench_.load(reference_);
-    bench_.take_reference(reference_, reference_pools_, profile_);
+    bench_.take_reference(reference_, reference_pools_, profile_); // which also tells whether there are photons
+    list_variants();
     for (std::size_t first = 0; first < groups_.size() && !profile_.interrupted;)
       first = run_batch(first);
     collect();
@@ -100,9 +107,6 @@ private:
   };
 
   void list_variants() {
-    reference_.max_depth = request_.scene.octree.max_depth;
-    reference_.clips = !request_.clips.empty();
-    reference_.patches = !request_.bends.empty();
     std::vector<TraversalVariant> all{reference_};
     for (TraversalVariant v : request_.variants) {
       v.max_depth = reference_.max_depth;
@@ -120,6 +124,7 @@ private:
       launches_of_.emplace_back();
       for (std::size_t k = 0; k < profiled_kernels; ++k) {
         const auto kernel = static_cast<ProfiledKernel>(k);
+        if (skips(kernel)) continue;
         const auto [at, is_new] = launch_of.emplace(launch_key(kernel, v), measured_.size());
         if (is_new) {
           measured_.push_back({kernel, v, key, {}, 1, {}});
@@ -207,6 +212,10 @@ private:
     }
   }
 
+  bool skips(ProfiledKernel kernel) const {
+    return kernel == ProfiledKernel::photons && !profile_.without_photons.empty();
+  }
+
   bool is_reference(const Measured& m) const { return name_of(m.variant) == name_of(reference_); }
 
   static void fail(Measured& m, const Error& error) {
@@ -223,6 +232,8 @@ private:
     for (std::size_t i = 0; i < profile_.variants.size(); ++i) {
       VariantProfile& v = profile_.variants[i];
       for (std::size_t k = 0; k < profiled_kernels; ++k) {
+        v.kernels[k].skipped = skips(static_cast<ProfiledKernel>(k));
+        if (v.kernels[k].skipped) continue;
         const Measured& m = measured_[launches_of_[i][k]];
         v.kernels[k] = m.times;
         v.pool_bytes = std::max(v.pool_bytes, m.pool_bytes);
@@ -242,7 +253,8 @@ private:
   double reference_seconds_ = 0.0;
   std::vector<Measured> measured_;
   std::vector<Group> groups_;
-  std::vector<std::array<std::size_t, profiled_kernels>> launches_of_; ///< of each variant: indices into measured_
+  std::vector<std::array<std::size_t, profiled_kernels>>
+      launches_of_; ///< of each variant: indices into measured_ of what is not skipped
   std::map<std::string, ProfiledPools> pools_;
   std::size_t done_ = 0;
   Profile profile_;

@@ -17,9 +17,10 @@ enum class ProfiledKernel {
   bounced,  ///< nearest hits of cosine rays off random splats: incoherent
   any,      ///< whether these hit anything
   segments, ///< whether anything stands between two splats, of pairs drawn at random: what the V-map asks
+  photons,  ///< photons from the lights by way of specular splats, to where they end
   render    ///< eye rays and shading of rows of the picture: what a user waits for
 };
-constexpr std::size_t profiled_kernels = 5;
+constexpr std::size_t profiled_kernels = 6;
 const char* name_of(ProfiledKernel kernel);
 
 struct ProfileRequest {
@@ -41,9 +42,12 @@ struct KernelProfile {
   std::vector<double> speedup; ///< of each: the reference's last seconds before it, over these
   std::uint64_t rays = 0;
   std::uint64_t bytes = 0; ///< the least that must move: rays in, answers out, the pools once
-  std::size_t wrong =
-      0; ///< rays that differ from the reference (render: eye rays, and pixels where they are more than few)
-  std::size_t ties = 0; ///< rays that find another splat at exactly the same distance: counted apart, allowed
+  /// Rays that differ from the reference; of render eye rays, and pixels where they are more than few, of photons those
+  /// that end elsewhere where they are.
+  std::size_t wrong = 0;
+  std::size_t ties = 0; ///< rays that find another splat at exactly the same distance: counted apart, allowed;
+                        ///< photons that met such a splat and so passed their leaf by, or did not
+  bool skipped = false; ///< the scene has nothing for it: Profile::without_photons
 };
 
 struct VariantProfile {
@@ -52,7 +56,7 @@ struct VariantProfile {
   std::uint64_t pool_bytes = 0;
   std::array<KernelProfile, profiled_kernels> kernels;
 
-  bool complete() const; ///< every kernel has a timed round
+  bool complete() const; ///< every kernel that the scene has work for has a timed round
   bool wrong() const;    ///< answers differ; never said of fast math, which is approximate by its name
   /// What the ranking goes by: how many times as fast as the reference the picture comes, median of the rounds.
   double speedup(ProfiledKernel kernel = ProfiledKernel::render) const;
@@ -63,6 +67,7 @@ struct Profile {
   std::array<std::uint64_t, profiled_kernels> rays{}; ///< a launch, eye and shadow rays of the reference for render
   PixelWindow eye_window, render_window;
   std::size_t proved_rays = 0; ///< of the reference, by a linear scan
+  std::string without_photons; ///< why the scene has none to time; empty when it has
   bool interrupted = false;
 
   /// Indices into variants, fastest first; only those that are complete and not wrong.

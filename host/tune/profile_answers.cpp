@@ -7,7 +7,24 @@ namespace pointgi {
 
 namespace {
 
-constexpr std::size_t few_pixels = 100; ///< one in so many may be shaded otherwise; its eye rays may not
+constexpr std::size_t few_pixels = 100;  ///< one in so many may be shaded otherwise; its eye rays may not
+constexpr std::size_t few_photons = 100; ///< one in so many may end elsewhere
+
+/// False of NaN.
+bool within(float a, float b, float tolerance) {
+  return std::fabs(a - b) <= tolerance;
+}
+
+bool ends_alike(const PhotonFlight& a, const PhotonFlight& b) {
+  if (a.end != b.end) return false;
+  const float power = 1e-2f * std::max({b.power[0], b.power[1], b.power[2]}),
+              emitted = 1e-2f * std::max({b.emitted[0], b.emitted[1], b.emitted[2]});
+  bool alike = true;
+  for (int k = 0; k < 3; ++k)
+    alike = alike && within(a.position[k], b.position[k], 1e-3f) && within(a.power[k], b.power[k], power) &&
+            within(a.emitted[k], b.emitted[k], emitted);
+  return alike;
+}
 
 } // namespace
 
@@ -30,6 +47,24 @@ Differences compare_blocked(View<std::uint32_t> found, View<std::uint32_t> truth
   Differences result;
   for (std::size_t i = 0; i < truth.size; ++i)
     result.wrong += (found[i] != 0) != (truth[i] != 0);
+  return result;
+}
+
+Differences compare_flights(View<PhotonFlight> found, View<PhotonFlight> truth) {
+  std::size_t elsewhere = 0, lost = 0, gained = 0, set_out = 0;
+  for (std::size_t i = 0; i < truth.size; ++i) {
+    const bool missed = found[i].end == PHOTON_MISSED, missed_in_truth = truth[i].end == PHOTON_MISSED;
+    set_out += !missed_in_truth;
+    lost += missed && !missed_in_truth;
+    gained += !missed && missed_in_truth;
+    elsewhere += !missed && !missed_in_truth && !ends_alike(found[i], truth[i]);
+  }
+  const std::size_t ties = lost + gained, surplus = std::max(lost, gained) - std::min(lost, gained);
+  const double few = static_cast<double>(set_out) / few_photons;
+  Differences result{0, ties};
+  if (static_cast<double>(elsewhere) > few) result.wrong += elsewhere;
+  // Each tie falls to one side or the other: four deviations of their sum.
+  if (static_cast<double>(surplus) > few + 4.0 * std::sqrt(static_cast<double>(ties))) result.wrong += surplus;
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What the launches of a profile found, and how it compares.
 #include "octree/view.h"
+#include "shared/photon_types.h"
 #include "shared/traversal_types.h"
 #include <cstdint>
 #include <vector>
@@ -20,6 +21,13 @@ Differences compare_answers(View<RayAnswer> found, View<RayAnswer> truth);
 
 /// Blocked or not, of the same rays.
 Differences compare_blocked(View<std::uint32_t> found, View<std::uint32_t> truth);
+
+/// What became of the same photons. Those that end otherwise, further off than a thousandth of the root cube's side, or
+/// with powers that differ by more than a hundredth are wrong where they are more than one in a hundred of those that
+/// set out, else forgiven: what rounds otherwise on one curved mirror is far off behind the next. Those that set out
+/// here and passed their leaf by there are ties, for discs of one plane are met at one distance and may be of two
+/// leaves; as many must have set out, but for one in a hundred and for chance: any more or fewer are wrong.
+Differences compare_flights(View<PhotonFlight> found, View<PhotonFlight> truth);
 
 /// Films of the same pixels. Pixels that differ are wrong where they are more than one in a hundred, else forgiven:
 /// blending adds up in another order, and a hit that rounds to the other side of a rim changes a sample.

@@ -15,6 +15,8 @@ std::size_t at(ProfiledKernel kernel) {
 constexpr std::size_t first_rays = 4096, fewest_rays = 1024, most_rays = std::size_t{1} << 22;
 /// Of a picture: 1024 pixels, so that groups of 64 pixels still keep several cores busy.
 constexpr std::size_t fewest_picture_rays = 1024 * GRID_RAYS;
+/// Of photons those that set out from leaves; up to four times as many fly, 64 bytes each.
+constexpr std::size_t most_photons = std::size_t{1} << 18;
 
 /// Tests of one ray with one splat that the linear scan may take: about a second.
 constexpr std::size_t scan_tests = std::size_t{1} << 28;
@@ -31,7 +33,12 @@ std::string pools_key(const TraversalVariant& v) {
   return tree_key(v) + " " + name_of(v.storage);
 }
 
-ProfileBench::ProfileBench(Session& session, const ProfileRequest& request) : session_(session), request_(request) {}
+ProfileBench::ProfileBench(Session& session, const ProfileRequest& request)
+    : session_(session), request_(request), photons_(session, request) {}
+
+bool ProfileBench::measures(ProfiledKernel kernel) const {
+  return kernel != ProfiledKernel::photons || photons_.reason_against().empty();
+}
 
 ProfiledPools ProfileBench::load(const TraversalVariant& variant) {
   if (last_key_ != tree_key(variant)) {
@@ -45,7 +52,17 @@ ProfiledPools ProfileBench::load(const TraversalVariant& variant) {
   }
   if (!images_fit(session_.info(), last_pools_, variant.storage))
     throw Error(ErrorKind::device, "the device's images are too small for these pools");
-  return {last_tree_, upload_pools(session_, last_pools_, variant.storage)};
+  ProfiledPools pools{last_tree_, upload_pools(session_, last_pools_, variant.storage), nullptr};
+  if (photons_.flights().size > 0)
+    pools.flight = std::make_shared<DeviceFlight>(photons_.flight(variant, pools.device, pools.tree->source));
+  return pools;
+}
+
+void ProfileBench::set_photons(const TraversalVariant& reference, ProfiledPools& pools, std::size_t count) {
+  session_.label_launches("photons planned");
+  rays_[at(ProfiledKernel::photons)] = photons_.plan(reference, pools.device, std::min(count, most_photons));
+  if (!measures(ProfiledKernel::photons)) return;
+  pools.flight = std::make_shared<DeviceFlight>(photons_.flight(reference, pools.device, pools.tree->source));
 }
 
 void ProfileBench::set_rays(ProfiledKernel kernel, std::size_t count) {
@@ -115,6 +132,7 @@ double ProfileBench::render(const TraversalVariant& variant, const ProfiledPools
 double ProfileBench::launch(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools) {
   session_.label_launches(name_of(variant) + " " + name_of(kernel));
   if (kernel == ProfiledKernel::segments) return segments(variant, pools);
+  if (kernel == ProfiledKernel::photons) return pools.flight->launch(photons_.flights(), 0, pools.flight->photons());
   return kernel == ProfiledKernel::render ? render(variant, pools, nullptr) : trace(kernel, variant, pools);
 }
 
@@ -131,6 +149,14 @@ ProfileBench::Answers ProfileBench::answers(ProfiledKernel kernel, const Travers
     segments(variant, pools);
     const std::vector<cl_uchar> hidden = session_.download(hidden_, hidden_.size);
     found.blocked.assign(hidden.begin(), hidden.end());
+    return found;
+  }
+  if (kernel == ProfiledKernel::photons) {
+    PhotonFlight unwritten{};
+    unwritten.end = PHOTON_ENDS;
+    session_.fill(photons_.flights(), unwritten, photons_.flights().size);
+    launch(kernel, variant, pools);
+    found.flights = session_.download(photons_.flights(), photons_.flights().size);
     return found;
   }
   // What a kernel leaves unwritten must not be another one's right answer.
@@ -161,6 +187,8 @@ Differences ProfileBench::launch_and_compare(ProfiledKernel kernel, const Traver
   case ProfiledKernel::any:
   case ProfiledKernel::segments:
     return compare_blocked(found.blocked, truth.blocked);
+  case ProfiledKernel::photons:
+    return compare_flights(found.flights, truth.flights);
   case ProfiledKernel::render:
     return compare_answers(found.hits, truth.hits) +
            compare_films(found.film, truth.film, pools.tree->lighting.emitters.empty());
@@ -210,11 +238,16 @@ void ProfileBench::prove(const TraversalVariant& reference, Profile& profile) {
   }
 }
 
-void ProfileBench::take_reference(const TraversalVariant& reference, const ProfiledPools& pools, Profile& profile) {
-  for (const ProfiledKernel kernel : {ProfiledKernel::eye, ProfiledKernel::bounced, ProfiledKernel::render}) {
+void ProfileBench::take_reference(const TraversalVariant& reference, ProfiledPools& pools, Profile& profile) {
+  const auto set = [&](ProfiledKernel kernel, std::size_t count) {
+    kernel == ProfiledKernel::photons ? set_photons(reference, pools, count) : set_rays(kernel, count);
+  };
+  for (const ProfiledKernel kernel :
+       {ProfiledKernel::eye, ProfiledKernel::bounced, ProfiledKernel::photons, ProfiledKernel::render}) {
     std::size_t count = first_rays;
     for (int pass = 0; pass < 3; ++pass) { // the first also builds and warms; few rays tell little of many
-      set_rays(kernel, count);
+      if (measures(kernel)) set(kernel, count);
+      if (!measures(kernel)) break;
       launch(kernel, reference, pools);
       double seconds = launch(kernel, reference, pools);
       for (int k = 0; k < 2; ++k) // the least: a busy machine must not make the launches small
@@ -225,15 +258,16 @@ void ProfileBench::take_reference(const TraversalVariant& reference, const Profi
                          kernel == ProfiledKernel::render ? fewest_picture_rays : fewest_rays, most_rays);
       count = count / GRID_RAYS * GRID_RAYS;
     }
-    set_rays(kernel, count);
+    if (measures(kernel)) set(kernel, count);
   }
   for (std::size_t k = 0; k < profiled_kernels; ++k)
-    truth_[k] = answers(static_cast<ProfiledKernel>(k), reference, pools);
+    if (measures(static_cast<ProfiledKernel>(k))) truth_[k] = answers(static_cast<ProfiledKernel>(k), reference, pools);
   const std::vector<float>& film = truth_[at(ProfiledKernel::render)].film;
   for (std::size_t pixel = 0; pixel < film.size(); pixel += FILM_CHANNELS)
     rays_[at(ProfiledKernel::render)] += static_cast<std::uint64_t>(film[pixel + FILM_RAYS]);
   prove(reference, profile);
   profile.rays = rays_;
+  profile.without_photons = photons_.reason_against();
   profile.eye_window = eye_window_;
   profile.render_window = render_window_;
 }
@@ -246,6 +280,8 @@ std::uint64_t ProfileBench::bytes(ProfiledKernel kernel, const TraversalVariant&
     return pool_bytes + rays(kernel) * (sizeof(RayQuery) + sizeof(cl_uint));
   case ProfiledKernel::segments:
     return pool_bytes + rays(kernel) * (sizeof(SegmentQuery) + 2 * sizeof(Splat) + sizeof(cl_uchar));
+  case ProfiledKernel::photons:
+    return pool_bytes + rays(kernel) * sizeof(PhotonFlight);
   case ProfiledKernel::render: { // two kernels: both read the pools, hits are written and read
     const PixelWindow& w = render_window_;
     const auto pixels = static_cast<std::uint64_t>(w.x1 - w.x0) * (w.y1 - w.y0);

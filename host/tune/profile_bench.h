@@ -4,6 +4,7 @@
 #include "host/render/tile_renderer.h"
 #include "host/tune/profile.h"
 #include "host/tune/profile_answers.h"
+#include "host/tune/profile_photons.h"
 #include <memory>
 
 namespace pointgi {
@@ -18,6 +19,7 @@ struct ProfiledTree {
 struct ProfiledPools {
   std::shared_ptr<const ProfiledTree> tree;
   DevicePools device;
+  std::shared_ptr<DeviceFlight> flight; ///< null where no photons fly, or before they are planned
 };
 
 /// Variants with the same text may share a tree, or pools on the device.
@@ -34,8 +36,8 @@ public:
   ProfiledPools load(const TraversalVariant& variant);
 
   /// Chooses how many rays a launch takes, by the reference, proves the reference by a linear scan and keeps its
-  /// answers as the truth. Throws Error(device) when it is wrong.
-  void take_reference(const TraversalVariant& reference, const ProfiledPools& pools, Profile& profile);
+  /// answers as the truth; `pools` get the photons that were planned. Throws Error(device) when it is wrong.
+  void take_reference(const TraversalVariant& reference, ProfiledPools& pools, Profile& profile);
 
   /// Device seconds of one launch.
   double launch(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
@@ -50,6 +52,7 @@ private:
   struct Answers {
     std::vector<RayAnswer> hits;
     std::vector<std::uint32_t> blocked;
+    std::vector<PhotonFlight> flights;
     std::vector<float> film;
   };
 
@@ -58,6 +61,8 @@ private:
   double render(const TraversalVariant& variant, const ProfiledPools& pools, Answers* answers);
   Answers answers(ProfiledKernel kernel, const TraversalVariant& variant, const ProfiledPools& pools);
   void set_rays(ProfiledKernel kernel, std::size_t count);
+  void set_photons(const TraversalVariant& reference, ProfiledPools& pools, std::size_t count);
+  bool measures(ProfiledKernel kernel) const;
   void prove(const TraversalVariant& reference, Profile& profile);
 
   Session& session_;
@@ -74,6 +79,7 @@ private:
   Buffer<Splat> splats_; ///< of the request: ends of segments
   Buffer<SegmentQuery> segments_;
   Buffer<cl_uchar> hidden_; ///< of segments
+  ProfilePhotons photons_;
   std::array<std::uint64_t, profiled_kernels> rays_{};
   std::array<Answers, profiled_kernels> truth_;
 };

@@ -196,9 +196,11 @@ std::vector<ProgramUse> all_programs() {
       uses.push_back({scan_program(scanned, backfaces), true, true});
   }
   for (const char* file : {"radiosity/fmm/expand.cl", "radiosity/fmm/m2l.cl", "radiosity/fmm/near.cl",
-                           "radiosity/direct/receive_from_all.cl", "radiosity/directions/receive.cl",
-                           "radiosity/gather/receive_from_senders.cl", "radiosity/gather/receive_picked.cl"})
-    uses.push_back({fmm_program(file), true, true});
+                           "radiosity/direct/receive_from_all.cl", "radiosity/gather/receive_from_senders.cl",
+                           "radiosity/gather/receive_picked.cl"})
+    for (const bool cpu : {true, false})
+      uses.push_back({fmm_program(file, fmm_lanes_on(ideal_device(cpu))), cpu, !cpu});
+  uses.push_back({{"radiosity/directions/receive.cl", ""}, true, true});
   for (const Program& program : {sky_program(false, false), sky_program(false, true), sky_program(true, true)})
     uses.push_back({program, true, true});
   for (const unsigned voxels : {32u, 64u, 128u})

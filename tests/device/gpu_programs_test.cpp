@@ -4,6 +4,7 @@
 #include "host/stages/prepared_scene.h"
 #include "host/tune/variant_list.h"
 #include "tests/support/cache_folder.h"
+#include "tests/support/device.h"
 #include "tests/support/source_folder.h"
 #include <catch2/catch.hpp>
 #include <set>
@@ -13,14 +14,6 @@ using namespace pointgi;
 using namespace pointgi::test;
 
 namespace {
-
-/// The device at hand, which says that it is a GPU.
-Device faked_gpu() {
-  Device device = choose_device("");
-  device.info.is_cpu = false;
-  device.info.is_gpu = true;
-  return device;
-}
 
 /// All stages of a picture, as the command makes one.
 void make_picture(Session& session, Scene scene, const std::optional<LightPaths>& paths) {

@@ -2,6 +2,7 @@
 #include "host/tune/profile.h"
 #include "tests/support/clouds.h"
 #include "tests/support/device.h"
+#include "tests/support/photon_scene.h"
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
@@ -39,6 +40,28 @@ struct Ball {
     return request;
   }
 };
+
+/// A mirrored and a glass ball on a floor before a flat mirror, in the light of a lamp of splats, a point light and an
+/// even sky: photons set out from every kind of source, and meet several surfaces.
+std::string caustics_scene(const std::string& caustics) {
+  return "version = 1\n[render]\nsize = [64, 48]\n[camera]\nposition = [0.0, 1.0, 4.0]\nlook_at = [0.0, 0.0, 0.0]\n"
+         "[environment]\nradiance = [0.1, 0.2, 0.3]\n[caustics]\n" +
+         caustics +
+         "\n[[light]]\ntype = \"point\"\nposition = [0.3, 1.4, 0.2]\npower_w = [10.0, 20.0, 30.0]\n"
+         "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\nreflectance = [0.9, 0.5, 0.1]\n"
+         "[[material]]\nname = \"glass\"\ntype = \"glass\"\nior = 1.5\n"
+         "[[material]]\nname = \"white\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"
+         "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.0, 0.0, 0.0]\nemission = [5.0, 5.0, 4.0]\n"
+         "[[shape]]\ntype = \"sphere\"\ncentre = [-0.5, 0.0, 0.0]\nradius = 0.3\nmaterial = \"mirror\"\nspacing = "
+         "0.05\n"
+         "[[shape]]\ntype = \"sphere\"\ncentre = [0.4, 0.0, 0.0]\nradius = 0.4\nmaterial = \"glass\"\nspacing = 0.05\n"
+         "[[shape]]\ntype = \"quad\"\ncorner = [-1.0, -0.5, -1.0]\nedge_u = [0.0, 0.0, 2.0]\nedge_v = [2.0, 0.0, 0.0]\n"
+         "material = \"white\"\nspacing = 0.1\n"
+         "[[shape]]\ntype = \"quad\"\ncorner = [-1.0, -0.5, -1.2]\nedge_u = [2.0, 0.0, 0.1]\nedge_v = [0.0, 1.0, 0.0]\n"
+         "material = \"mirror\"\nspacing = 0.1\n"
+         "[[shape]]\ntype = \"disc\"\ncentre = [0.0, 1.5, -0.5]\nnormal = [0.0, -1.0, 0.3]\nradius = 0.2\n"
+         "material = \"lamp\"\nspacing = 0.05\n";
+}
 
 /// A few that differ in everything; the reference is not among them.
 std::vector<TraversalVariant> some_variants() {
@@ -97,6 +120,45 @@ TEST_CASE("a profile measures the reference and all that is asked for, and finds
     CHECK(profile.ranking().size() == profile.variants.size());
     CHECK(profile.winner() != nullptr);
   }
+}
+
+TEST_CASE("photons end alike by all variants, in trees of any order") {
+  for (const char* caustics : {"photons = 1000", "power = \"equal\""}) {
+    CAPTURE(caustics);
+    const PhotonScene mirrors(caustics_scene(caustics));
+    ProfileRequest request{mirrors.scene,        mirrors.placed.frame, mirrors.placed.splats,
+                           mirrors.placed.clips, mirrors.placed.bends, some_variants()};
+    request.rounds = 1;
+    request.launch_seconds = 1e-3;
+    const Profile profile = run(request);
+    CHECK(profile.without_photons.empty());
+    for (const VariantProfile& v : profile.variants) {
+      CAPTURE(name_of(v.variant), v.failure);
+      const KernelProfile& photons = v.kernels[static_cast<std::size_t>(ProfiledKernel::photons)];
+      CHECK(v.complete());
+      CHECK(photons.wrong == 0);
+      CHECK(photons.rays >= 1024); // asked for are as many at least
+      CHECK(photons.bytes > 64 * photons.rays);
+      CHECK(photons.seconds.size() == 1);
+      CHECK_FALSE(photons.skipped);
+    }
+  }
+}
+
+TEST_CASE("a profile says why there are no photons to time") {
+  const auto reason = [](const PhotonScene& scene) {
+    ProfileRequest request{scene.scene,        scene.placed.frame, scene.placed.splats,
+                           scene.placed.clips, scene.placed.bends, {}};
+    request.rounds = 1;
+    request.launch_seconds = 1e-3;
+    const Profile profile = run(request);
+    CHECK(profile.variants[0].complete());
+    CHECK(profile.variants[0].kernels[static_cast<std::size_t>(ProfiledKernel::photons)].skipped);
+    return profile.without_photons;
+  };
+  CHECK(reason(PhotonScene(caustics_scene("photons = 0"))) == "caustics.photons = 0");
+  const Ball ball;
+  CHECK(run(ball.request()).without_photons == "no specular material");
 }
 
 TEST_CASE("a profile that is stopped tells what is complete and what is not") {

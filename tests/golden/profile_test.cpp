@@ -76,7 +76,10 @@ TEST_CASE("profile measures, checks, tells and stores, and render uses what was 
       CHECK(k["rays"] > 0);
       CHECK(k["rays_per_s"] > 0.0);
       CHECK(k["bytes_per_s"] > 0.0);
+      CHECK(v["kernels"].count("photons") == 0);
     }
+  CHECK(json["skipped"]["photons"] == "no specular material");
+  CHECK_THAT(run.out, Contains("photons: not measured: no specular material"));
   const auto trace = json_of(s.folder.file("out/trace.json"));
   std::set<std::string> kernels;
   for (const auto& event : trace["traceEvents"])
@@ -140,6 +143,35 @@ TEST_CASE("a variant whose kernels are wrong is rejected and never stored") {
   const Run nothing = s.profile(arguments, own);
   CHECK(nothing.code == 4);
   CHECK_THAT(nothing.err, Contains("differs from a linear scan"));
+}
+
+TEST_CASE("a scene with a mirror has its photons timed, and a variant whose photons end elsewhere is rejected") {
+  const Setting s;
+  s.folder.write("ball.toml", mirror_scene());
+  const std::string arguments = std::string("--rounds 1 --filter ") + wide_packet;
+  REQUIRE(s.profile(arguments).code == 0);
+  const auto json = json_of(s.folder.file("out/profile.json"));
+  CHECK(json["skipped"].empty());
+  for (const char* name : {wide_packet, reference}) {
+    const auto& photons = named(json, name)["kernels"]["photons"];
+    CHECK(photons["rays"] >= 1024);
+    CHECK(photons["wrong"] == 0);
+    CHECK(photons["seconds"].size() == 1);
+  }
+  CHECK_THAT(contents(s.folder.file("out/trace.json")), Contains("\"trace_photons\""));
+
+  std::filesystem::copy(POINTGI_SOURCE_DIR "/kernels", s.folder.file("kernels"),
+                        std::filesystem::copy_options::recursive);
+  const std::string path = "kernels/photon/trace_photons.cl";
+  std::string text = contents(s.folder.file(path));
+  const std::string from = "flight->end = end;";
+  REQUIRE(text.find(from) != std::string::npos);
+  s.folder.write(path, text.replace(text.find(from), from.size(),
+                                    "flight->end = TRAVERSAL_FORM == FORM_WIDE ? PHOTON_CUT : end;"));
+  const Run run = s.profile(arguments, "POINTGI_KERNEL_DIR=" + s.folder.file("kernels"));
+  CHECK(run.code == 0);
+  CHECK_THAT(run.out,
+             Contains(std::string(wide_packet) + ": WRONG: ") && Contains(" photons differ from the reference"));
 }
 
 TEST_CASE("a wrong picture is rejected, though every given ray is answered right") {

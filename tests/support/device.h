@@ -9,4 +9,18 @@ inline Session& session() {
   return one;
 }
 
+/// The device at hand, which says that it is a GPU.
+inline Device faked_gpu() {
+  Device device = choose_device("");
+  device.info.is_cpu = false;
+  device.info.is_gpu = true;
+  return device;
+}
+
+/// A session of its own: programs are those of GPUs, and so are the shapes of launches.
+inline Session& gpu_session() {
+  static Session one(faked_gpu());
+  return one;
+}
+
 } // namespace pointgi::test

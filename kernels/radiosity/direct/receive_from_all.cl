@@ -5,14 +5,14 @@
 /* irradiance[colour * stride + i] += sum over j of v_ij F_ij B_j, v_ij a bit of a tile of the band: of a row in it, all j of
  * columns before held_end; of a row before it, the j of its columns, which are the band's rows. Senders are summed square
  * by square, SENDERS_SUMMED of them, and squares one by one: band after band gives the same bits for any bands.
- * NDRange: 1-D, a work-item a row of FMM_LANES receivers, padded: row at.first_row + i of at.rows.
+ * NDRange: 1-D, FMM_LANES / FMM_ITEM_LANES work-items a row of FMM_LANES receivers, padded: at.rows rows from at.first_row.
  *   tiles   of the band, as pairs_visible writes them (PairRows); bits of points past the last are zero
  *   points  planes at.stride apart, as receivers_at reads them; `flux` too */
 __kernel void receive_from_all(PairRows at, const __global ulong* tiles, const __global float* points,
                                const __global float* flux, __global float* irradiance) {
-  if (get_global_id(0) >= at.rows)
+  if (FMM_BLOCK >= at.rows)
     return;
-  const uint row = at.first_row + get_global_id(0);
+  const uint row = at.first_row + FMM_BLOCK;
   Receivers r = receivers_at(points, at.stride, FMM_LANES * row);
   Irradiance sum = irradiance_at(irradiance, at.stride, FMM_LANES * row);
   const ulong before = PAIR_TILES(at.held_from / SQUARE_TILES);

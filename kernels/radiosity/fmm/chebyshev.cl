@@ -27,9 +27,9 @@ static inline void nodes_of_block(const __global FmmGrid* grid, uint first_node,
                                   fmm_lanes* z) {
   const int nx = (int)FMM_AXIS(grid->axis, 0), ny = (int)FMM_AXIS(grid->axis, 1), nz = (int)FMM_AXIS(grid->axis, 2);
   const fmm_mask k = min(FMM_LANE_NUMBERS + (int)(first_node - grid->first), nx * ny * nz - 1);
-  *x = cospi(convert_float8(2 * (k % nx) + 1) / (2.0f * (float)nx));
-  *y = cospi(convert_float8(2 * (k / nx % ny) + 1) / (2.0f * (float)ny));
-  *z = cospi(convert_float8(2 * (k / (nx * ny)) + 1) / (2.0f * (float)nz));
+  *x = cospi(fmm_float(2 * (k % nx) + 1) / (2.0f * (float)nx));
+  *y = cospi(fmm_float(2 * (k / nx % ny) + 1) / (2.0f * (float)ny));
+  *z = cospi(fmm_float(2 * (k / (nx * ny)) + 1) / (2.0f * (float)nz));
 }
 
 /* A place in a grid's own units, [-1, 1] along each axis. */

@@ -67,7 +67,7 @@ static inline void receive_flux(Receivers* r, fmm_lanes factor, const __global f
 /* What the point j of the planes `senders` gives to the receivers whose bits of `lanes` are set. */
 static inline void receive_from_sender(Receivers* r, int lanes, const __global float* senders, const __global float* flux,
                                        uint stride, uint j) {
-  if (lanes == 0)
+  if (((uint)lanes & FMM_OWN_BITS) == 0u)
     return;
   const fmm_lanes factor = exchange_with_point(r, senders + j, stride) * INVERSE_PI;
   receive_flux(r, select((fmm_lanes)(0.0f), factor, (((fmm_mask)(lanes) >> FMM_LANE_NUMBERS) & 1) != 0), flux, stride, j);

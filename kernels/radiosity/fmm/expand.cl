@@ -1,7 +1,7 @@
-/* Moments up the tree, local expansions down, and the field at the points (method.md section 4). A work-item is a block of
- * FMM_LANES nodes or points of one cluster and alone writes them. Expansions: FMM_VALUES planes of `nodes` numbers,
- * plane 3 * colour + axis.
- *   jobs        one a work-item: (cluster, first node or point of the block, how many of it count); `count` of them from
+/* Moments up the tree, local expansions down, and the field at the points (method.md section 4). A block of FMM_LANES nodes
+ * or points of one cluster has FMM_LANES / FMM_ITEM_LANES work-items, which alone write it. Expansions: FMM_VALUES planes of
+ * `nodes` numbers, plane 3 * colour + axis.
+ *   jobs        one a block: (cluster, first node or point of the block, how many of it count); `count` of them from
  *               `first_job`
  *   positions   of nodes or points: x of all, then y, then z, `nodes` or `points` (both padded) apart */
 #include "radiosity/fmm/chebyshev.cl"
@@ -20,7 +20,7 @@ static inline fmm_lanes spread_weight(uint3 n, fmm_lanes ux, fmm_lanes uy, fmm_l
 __kernel void p2m(const __global uint4* jobs, uint first_job, uint count, const __global FmmCluster* clusters,
                   const __global FmmGrid* grids, uint nodes, const __global float* points, uint point_count,
                   const __global float* flux, __global float* moments) {
-  const uint id = get_global_id(0);
+  const uint id = FMM_BLOCK;
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];
@@ -54,7 +54,7 @@ __kernel void p2m(const __global uint4* jobs, uint first_job, uint count, const 
 __kernel void m2m(const __global uint4* jobs, uint first_job, uint count, const __global FmmCluster* clusters,
                   const __global FmmGrid* grids, const __global float* node_positions, uint nodes,
                   __global float* moments) {
-  const uint id = get_global_id(0);
+  const uint id = FMM_BLOCK;
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];
@@ -105,7 +105,7 @@ static inline void interpolate(const __global FmmGrid* grid, const __global floa
 __kernel void l2l(const __global uint4* jobs, uint first_job, uint count, const __global FmmCluster* clusters,
                   const __global FmmGrid* grids, const __global float* node_positions, uint nodes,
                   __global float* local_values) {
-  const uint id = get_global_id(0);
+  const uint id = FMM_BLOCK;
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];
@@ -122,7 +122,7 @@ __kernel void l2l(const __global uint4* jobs, uint first_job, uint count, const 
 __kernel void l2p(const __global uint4* jobs, uint first_job, uint count, const __global FmmGrid* grids, uint nodes,
                   const __global float* points, uint point_count, const __global float* local_values,
                   __global float* irradiance) {
-  const uint id = get_global_id(0);
+  const uint id = FMM_BLOCK;
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];

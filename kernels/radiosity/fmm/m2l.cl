@@ -2,14 +2,15 @@
 #include "radiosity/fmm/lanes.cl"
 
 /* A block of nodes of a receiving cluster: local = sum over its far sources of v sum_m T(x_m - x) M_m, T M = r (r.M) / r^4.
- * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (cluster, first node of the block, -, -). Every block has
- * a job, so that all of `local_values` is written. FMM_VALUES planes of `nodes` numbers, plane 3 * colour + axis.
+ * NDRange: 1-D, FMM_LANES / FMM_ITEM_LANES work-items a block, padded. jobs[first_job + i] = (cluster, first node of the
+ * block, -, -). Every block has a job, so that all of `local_values` is written. FMM_VALUES planes of `nodes` numbers, plane
+ * 3 * colour + axis.
  * far_rows: row of cluster k is [far_begin[k], far_begin[k + 1]) of sources (cluster) and shares v. */
 __kernel void m2l(const __global uint4* jobs, uint first_job, uint count, const __global FmmGrid* grids,
                   const __global float* node_positions, uint nodes, const __global uint* far_begin,
                   const __global uint* far_source, const __global float* far_share, const __global float* moments,
                   __global float* local_values) {
-  const uint id = get_global_id(0);
+  const uint id = FMM_BLOCK;
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];

@@ -27,12 +27,12 @@ static inline void receive_near(Receivers* r, const __global FmmCluster* source,
 static inline fmm_lanes visible_share(float share, uint own_share, const __global uchar* point_shares, uint block) {
   if (own_share == NO_POINT_SHARES)
     return share;
-  return convert_float8(vload8(0, point_shares + own_share + block)) * (1.0f / 255.0f);
+  return fmm_float(load_fmm(point_shares + own_share + block)) * (1.0f / 255.0f);
 }
 
 /* irradiance[colour * stride + i] += mid and near rows of the leaf and of all clusters above it, for a block of its points.
- * NDRange: 1-D, a work-item a block, padded. jobs[first_job + i] = (leaf, first point, points, -). Rows as in m2l; own_share: of each entry, NO_POINT_SHARES or
- * where its receivers' shares begin in point_shares.
+ * NDRange: 1-D, FMM_LANES / FMM_ITEM_LANES work-items a block, padded. jobs[first_job + i] = (leaf, first point, points, -).
+ * Rows as in m2l; own_share: of each entry, NO_POINT_SHARES or where its receivers' shares begin in point_shares.
  * Cluster s has the fluxes flux_begin[s] ... flux_begin[s + 1] - 1. Written by nobody else; l2p must be done. */
 __kernel void receive_points(const __global uint4* jobs, uint first_job, uint count,
                              const __global FmmCluster* clusters, const __global float* points, uint stride,
@@ -43,7 +43,7 @@ __kernel void receive_points(const __global uint4* jobs, uint first_job, uint co
                              const __global uint* near_begin, const __global uint* near_source,
                              const __global float* near_share, const __global uint* near_own_share,
                              const __global uchar* point_shares, __global float* irradiance) {
-  const uint id = get_global_id(0);
+  const uint id = FMM_BLOCK;
   if (id >= count)
     return;
   const uint4 job = jobs[first_job + id];

@@ -3,15 +3,15 @@
 #include "shared/pair_types.h"
 
 /* irradiance[colour * stride + i] = sum over senders s of v_is F_is B_s, in blocks of SENDERS_SUMMED.
- * NDRange: 1-D, a work-item a row of FMM_LANES receivers, padded: row at.first_row + i of at.rows.
+ * NDRange: 1-D, FMM_LANES / FMM_ITEM_LANES work-items a row of FMM_LANES receivers, padded: at.rows rows from at.first_row.
  *   seen     bits of senders_visible (SenderRows)
  *   points   the receivers, as receivers_at reads them, planes at.stride apart
  *   senders  their planes, at.sender_stride apart; `flux` too */
 __kernel void receive_from_senders(SenderRows at, const __global uchar* seen, const __global float* points,
                                    const __global float* senders, const __global float* flux, __global float* irradiance) {
-  if (get_global_id(0) >= at.rows)
+  if (FMM_BLOCK >= at.rows)
     return;
-  const uint row = at.first_row + get_global_id(0);
+  const uint row = at.first_row + FMM_BLOCK;
   const __global uchar* seen_by = seen + (ulong)(row - at.held_from) * at.senders;
   Receivers r = receivers_at(points, at.stride, FMM_LANES * row);
   Irradiance sum = {0.0f, 0.0f, 0.0f};

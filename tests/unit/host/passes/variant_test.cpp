@@ -118,6 +118,27 @@ TEST_CASE("pictures whose pixels trace no cones know nothing of voxels") {
   CHECK_THAT(cones_program("radiosity/cones/trace.cl", 1).options, Contains("CONE_SIDES=1"));
 }
 
+TEST_CASE("light between surfaces goes by whole blocks on CPU devices and by one lane a work-item on others") {
+  const DeviceInfo cpu = ideal_device(true), gpu = ideal_device(false);
+  CHECK(fmm_lanes_on(cpu) * fmm_items_on(cpu) == 8);
+  CHECK(fmm_lanes_on(gpu) * fmm_items_on(gpu) == 8);
+  CHECK(fmm_items_on(cpu) == 1);
+  const std::vector<ProgramUse> programs = all_programs();
+  std::size_t of_cpus = 0, of_gpus = 0;
+  for (const ProgramUse& use : programs) {
+    const Program on_cpu = fmm_program(use.program.file.c_str(), fmm_lanes_on(cpu)),
+                  on_gpu = fmm_program(use.program.file.c_str(), fmm_lanes_on(gpu));
+    CHECK(on_cpu.options.empty());
+    if (use.program.options != on_gpu.options) continue;
+    CHECK((use.gpu && !use.cpu));
+    ++of_gpus;
+    for (const ProgramUse& other : programs)
+      of_cpus += other.program.file == use.program.file && other.program.options.empty() && other.cpu && !other.gpu;
+  }
+  CHECK(of_gpus == 6);
+  CHECK(of_cpus == of_gpus);
+}
+
 TEST_CASE("each program is listed once, with the devices that may run it") {
   std::set<std::string> seen;
   std::size_t cpu_only = 0;

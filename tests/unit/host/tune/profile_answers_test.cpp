@@ -32,6 +32,50 @@ TEST_CASE("answers: other splats and distances are wrong, ties at exactly one di
   CHECK(compare_blocked(std::vector<std::uint32_t>{1, 1, 0}, blocked).wrong == 2);
 }
 
+TEST_CASE("flights: a few photons may end elsewhere, more may not") {
+  PhotonFlight stored{};
+  stored.end = PHOTON_STORED;
+  std::fill_n(stored.position, 3, 0.5f);
+  std::fill_n(stored.power, 3, 4.0f);
+  std::fill_n(stored.emitted, 3, 8.0f);
+  std::vector<PhotonFlight> truth(1000, stored);
+  PhotonFlight missed{}; // those do not count among the ones of which a few may differ
+  missed.end = PHOTON_MISSED;
+  truth.insert(truth.end(), 1000, missed);
+  const auto with = [&](std::size_t count, const PhotonFlight& other, std::size_t first = 0) {
+    std::vector<PhotonFlight> found = truth;
+    std::fill_n(found.begin() + static_cast<std::ptrdiff_t>(first), count, other);
+    return compare_flights(found, truth).wrong;
+  };
+  PhotonFlight other = stored;
+  other.position[1] = 0.502f;
+  CHECK(with(0, other) == 0);
+  CHECK(with(10, other) == 0);
+  CHECK(with(11, other) == 11);
+  other.position[1] = 0.5005f;
+  other.power[2] = 4.03f;
+  CHECK(with(1000, other) == 0);
+  other.power[2] = 4.05f;
+  CHECK(with(1000, other) == 1000);
+  other = stored;
+  other.emitted[0] = NAN;
+  CHECK(with(1000, other) == 1000);
+  other = stored;
+  other.end = PHOTON_ABSORBED;
+  CHECK(with(500, other) == 500);
+  // Missing and setting out must balance; four deviations of 100 are 40, and one in a hundred may be more.
+  CHECK(with(500, missed) == 500);
+  CHECK(with(500, stored, 1500) == 500);
+  CHECK(with(100, missed) == 100);
+  std::vector<PhotonFlight> found = truth;
+  std::fill_n(found.begin(), 100, missed);
+  std::fill_n(found.begin() + 1500, 100, stored);
+  CHECK(compare_flights(found, truth).wrong == 0);
+  CHECK(compare_flights(found, truth).ties == 200);
+  missed.position[0] = 9.0f; // nothing is asked of where those were
+  CHECK(with(1000, missed, 1000) == 0);
+}
+
 TEST_CASE("films: a few pixels may differ, more may not") {
   const std::size_t pixels = 1000;
   const std::vector<float> truth(pixels * FILM_CHANNELS, 4.0f);
@@ -80,6 +124,9 @@ TEST_CASE("the ranking leaves out what is wrong, failed or unfinished, and appro
   CHECK(p.winner() == &p.variants[5]);
   CHECK(p.variants[5].speedup() == 3.0);
   CHECK(Profile{}.winner() == nullptr);
+  // What the scene has nothing for is not waited for.
+  p.variants[4].kernels[3].skipped = true;
+  CHECK(p.ranking().front() == 4);
 }
 
 TEST_CASE("the window lies in the picture's middle and holds about as many pixels as asked") {
