@@ -14,8 +14,8 @@ constexpr const char* bytes_defined =
     "once, over its seconds; what caches save or repeat is not in it";
 constexpr const char* before_its_turn = "interrupted before their turn";
 constexpr const char* ties_defined =
-    "ties: rays that find another splat at exactly the same distance, which trees of another order may, and photons "
-    "that therefore pass by what they were aimed at, or no longer do";
+    "ties: rays that find another splat at exactly the same distance, which trees of another order may; of photons, "
+    "those that meet such a splat and therefore miss their target in one of the two trees";
 constexpr const char* order_defined =
     "sorted by the picture's speed: the reference's seconds for the same rows over the variant's, median of the rounds";
 

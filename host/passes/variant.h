@@ -108,7 +108,7 @@ Program path_program(const TraversalVariant& variant, const SceneFeatures& featu
 Program fmm_program(const char* file, unsigned lanes);
 /// What suits the device: all where a work-item has vector registers of its own, as on CPU devices, else 1.
 unsigned fmm_lanes_on(const DeviceInfo& device);
-/// Work-items that a block has there.
+/// Work-items that a block has there, FMM_LANES over the lanes of each.
 std::size_t fmm_items_on(const DeviceInfo& device);
 /// Voxel cone tracing: a file of kernels/radiosity/cones. `texels`: of a voxel; 0 for voxelise.cl, which does not ask.
 Program cones_program(const char* file, unsigned texels = 0);

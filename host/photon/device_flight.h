@@ -19,7 +19,7 @@ struct PhotonRequest {
   std::uint32_t flight = 0; ///< photons of other flights have other random numbers
 };
 
-/// All that the photons of a request fly by. Borrows session and pools; of the request only what it copies.
+/// All that the photons of a request fly by. Borrows the session; keeps nothing of the request.
 class DeviceFlight {
 public:
   /// `pools`: of the request's variant; leaves, emitters and the normal field refer to its points. Throws

@@ -14,8 +14,8 @@ namespace {
 constexpr double default_radius = 0.05;
 
 /// Empty when photons are sent.
-std::string reason_against(const IndirectRequest& request, bool specular) {
-  if (request.by_paths && specular) return "the path tracer makes the picture";
+std::string reason_against(const IndirectRequest& request) {
+  if (request.by_paths && request.lighting.has_specular()) return "the path tracer makes the picture";
   return reason_against_photons(request.lighting, request.scene.caustics);
 }
 
@@ -76,7 +76,7 @@ Caustics run_photon_stage(Session& session, const DevicePools& pools, const Indi
                           const Buffer<cl_float4>* normal_field, StageLog& stages) {
   Caustics caustics;
   const CausticSettings& settings = request.scene.caustics;
-  const std::string reason = reason_against(request, normal_field != nullptr);
+  const std::string reason = reason_against(request);
   if (!reason.empty()) {
     if (settings.place && settings.photons > 0)
       log_warning("{}: [caustics] has no effect: {}", settings.place->text(), reason);

@@ -45,8 +45,9 @@ struct KernelProfile {
   /// Rays that differ from the reference; of render eye rays, and pixels where they are more than few, of photons those
   /// that end elsewhere where they are.
   std::size_t wrong = 0;
-  std::size_t ties = 0; ///< rays that find another splat at exactly the same distance: counted apart, allowed;
-                        ///< photons that met such a splat and so passed their leaf by, or did not
+  /// Rays that find another splat at exactly the same distance; of photons, those that meet such a splat and therefore
+  /// miss their leaf in one of the two trees. Counted apart, allowed.
+  std::size_t ties = 0;
   bool skipped = false; ///< the scene has nothing for it: Profile::without_photons
 };
 

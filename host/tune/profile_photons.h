@@ -14,9 +14,9 @@ public:
   /// Why the scene has none, which a plan may find out; empty when it has.
   const std::string& reason_against() const { return reason_; }
 
-  /// About so many photons that set out from specular splats, by what `variant` finds hidden in its pools; returns how
-  /// many fly, those that pass their leaf by among them, or 0 where
-  /// no light reaches a specular splat. Throws Error(device), Error(memory).
+  /// About so many photons that set out from specular splats, by what `variant` finds hidden in its pools. Returns how
+  /// many fly, those that pass their leaf by among them; 0 where no light reaches a specular splat. Throws
+  /// Error(device), Error(memory).
   std::size_t plan(const TraversalVariant& variant, const DevicePools& pools, std::size_t photons);
 
   /// The planned photons among the points of a pool, `source` being the input index of each. Throws as plan().

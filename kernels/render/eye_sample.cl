@@ -40,7 +40,7 @@ static inline void add_surface(__constant RenderParams* params, Ray ray, float t
 /* The surface that an eye ray meets. */
 typedef struct EyeSurface {
   Surface surface;
-  bool is_known; /* before it is traced: only light that rays find is asked for (kernels/render/adaptive.cl) */
+  bool is_known; /* of another sample: only light that shadow rays find is asked for (kernels/render/adaptive.cl) */
 } EyeSurface;
 
 /* Once a sample, in one place: from several, compilers make an address of it, and the sums stand in memory. */
@@ -142,7 +142,7 @@ static inline bool is_bright(float3 v) { return v.x > 0.0f || v.y > 0.0f || v.z 
 #ifndef HAS_SPECULAR /* else kernels/render/specular_sample.cl */
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. *eye
- * becomes what the ray meets, unless it is known: then only direct light and rays are added. */
+ * becomes what the ray meets, if anything; where it is known already, light from surfaces is left out. */
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, EyeSurface* eye,
                               float* sums) {
   Surface s;
@@ -183,7 +183,8 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #ifdef HAS_RADIOSITY
   add_diffuse(diffuse, sums);
 #endif
-  eye->surface = s;
+  if (met)
+    eye->surface = s;
   return point;
 }
 #endif

@@ -48,7 +48,7 @@ static inline void copy_sample(__local PixelSamples* samples, uint from, uint to
   samples->points[to] = samples->points[from];
 }
 
-/* Of a sample for which another one speaks but for the light that its own rays have found. */
+/* Replaces the direct light and the count of rays of a sample that was copied by its own. */
 static inline void keep_light(const float* sums, uint lane, __local PixelSamples* samples) {
   samples->sums[FILM_DIRECT][lane] = sums[FILM_DIRECT];
   samples->sums[FILM_DIRECT + 1][lane] = sums[FILM_DIRECT + 1];

@@ -35,13 +35,13 @@ void PIXEL_KERNEL(POOL_PARAMS, LIGHT_PARAMS,
   if (!is_sample)
     keep_sample(sums, FILM_NO_POINT, item.lane, pixel);
   barrier(CLK_LOCAL_MEM_FENCE);
-  uint common = params->adaptive != 0u ? ALIKE_SURFACE | ALIKE_LIGHT : 0u;
+  const PixelPass pass = pixel_pass(id, params->samples, false);
+  uint common = params->adaptive != 0u && has_cells(pass) ? ALIKE_SURFACE | ALIKE_LIGHT : 0u;
   for (uint i = 0u; i < GRID_RAYS; ++i)
     common &= pixel->alike[i];
-  Speaker speaker = {item.lane, 0u};
-  if ((common & ALIKE_SURFACE) != 0u && is_sample)
-    speaker = speaker_of(id, params->samples, item.lane);
-  const bool speaks = speaker.lane == item.lane;
+  const uint cell = common != 0u ? cell_of(pass, item.lane) % CELLS : 0u;
+  const uint speaker = common != 0u ? speaker_of(id, pass, cell) : item.lane;
+  const bool speaks = speaker == item.lane;
   /* First the samples that speak, then what is left of the others: in two rounds, so that the code, which is long, stands
    * there once. */
   for (uint round = 0u; round < 2u; ++round) {
@@ -49,23 +49,23 @@ void PIXEL_KERNEL(POOL_PARAMS, LIGHT_PARAMS,
     EyeSurface eye;
     eye.is_known = false;
     if (is_due && !speaks) {
-      copy_sample(pixel, speaker.lane, item.lane);
+      copy_sample(pixel, speaker, item.lane);
       eye.is_known = (common & ALIKE_LIGHT) == 0u && pixel->points[item.lane] != FILM_NO_POINT;
     }
     if (is_due && (speaks || eye.is_known)) {
       Ray ray;
       float t_start;
       sample_ray(params, id, &ray, &t_start);
-      if (eye.is_known)
-        eye.surface = surface_at(surfaces[item.pixel][speaker.cell], ray);
       const Hit hit = {hits[at].t[item.lane], hits[at].splat[item.lane]};
+      if (eye.is_known)
+        eye.surface = surface_at(surfaces[item.pixel][cell], ray, hit);
       const uint point = ADD_SAMPLE(POOL_ARGS, lights, id, ray, t_start, hit, &eye, sums);
       if (!speaks) {
         keep_light(sums, item.lane, pixel);
       } else {
         keep_sample(sums, point, item.lane, pixel);
-        if (common != 0u)
-          surfaces[item.pixel][speaker.cell] = eye.surface;
+        if (common == ALIKE_SURFACE && point != FILM_NO_POINT)
+          surfaces[item.pixel][cell] = eye.surface;
       }
     }
     barrier(CLK_LOCAL_MEM_FENCE);

@@ -97,7 +97,8 @@ static inline void add_first_surface(Lights lights, Ray ray, float t_start, cons
 
 /* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
  * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. *eye
- * becomes what the ray meets, unless it is known: then only direct light and rays are added, and no ray goes on. */
+ * becomes what the ray meets, if anything; where it is known already, light from surfaces and photons is left out, and no ray
+ * goes on. */
 ALWAYS_INLINE
 static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, EyeSurface* eye,
                               float* sums) {
@@ -121,14 +122,13 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
       s = eye->surface;
     else
       met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
-    if (bounces == 0u)
-      eye->surface = s;
     if (met) {
       const __global Material* material = lights.materials + s.material;
       media = media_before(media, &s, lights.materials);
       throughput *= beer_of(media, lights.materials, s.t);
       if (bounces == 0u) {
         point = s.splat;
+        eye->surface = s;
         add_first_surface(lights, ray, t_start, &s, sums);
       }
       if (s.front && is_lit(material) && (bounces == 0u || bounces < most)) {

@@ -49,8 +49,8 @@ TEST_CASE("fmm on the device equals its twin") {
       twin.apply(b, LinearisationPoint::current, expected);
       device.apply(b, LinearisationPoint::current, h);
       lane_by_lane.apply(b, LinearisationPoint::current, h_of_lanes);
-      CHECK(relative_l2(h_of_lanes, h) <
-            1e-6); // the same sums in the same order: quotients and cosines may round otherwise
+      // The same sums in the same order: quotients and cosines may round otherwise.
+      CHECK(relative_l2(h_of_lanes, h) < 1e-6);
       // Float: 1e-7 of places in the cube is 1e-4 of the distance of the nearest splats, whose share is small.
       CHECK(relative_l2(h, expected) < 2e-5);
       double worst = 0.0, largest = 0.0;

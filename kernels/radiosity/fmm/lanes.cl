@@ -1,10 +1,13 @@
 /* Blocks of FMM_LANES nodes or points: of the block at p, load_fmm(p) is what this work-item has of it.
  *   FMM_ITEM_LANES  lanes of a block a work-item: all 8, as vectors of the language, for CPU compilers do not vectorise
- *                   diverging work-items; or 1, for devices whose work-items are lanes already: vectors take two to five
+ *                   diverging work-items; or 1, for devices whose work-items are lanes already: vectors take two to four
  *                   times the registers there, and neighbours would read what lies eight numbers apart */
 #include "shared/fmm_types.h"
 #ifndef FMM_ITEM_LANES
 #define FMM_ITEM_LANES 8
+#endif
+#if FMM_ITEM_LANES != 1 && FMM_ITEM_LANES != FMM_LANES
+#error "a work-item takes all lanes of a block, or one"
 #endif
 
 /* FMM_BLOCK: number of this work-item's block in the launch, which has FMM_LANES / FMM_ITEM_LANES work-items a block.
