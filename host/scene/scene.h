@@ -46,7 +46,7 @@ struct RenderSettings {
   bool auto_exposure = false;   ///< instead chosen from the picture (host/image/exposure.h)
   std::optional<int> max_depth; ///< most surface points of a path from light to eye; absent: no limit
   bool jitter = true;
-  bool adaptive = true; ///< few samples of a pixel whose surface does not change are shaded in full
+  bool adaptive = true; ///< few samples of a pixel in which nothing changes are shaded
 };
 
 struct CameraSettings {

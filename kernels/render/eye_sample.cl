@@ -37,12 +37,6 @@ static inline void add_surface(__constant RenderParams* params, Ray ray, float t
   sums[FILM_BACK_FACE] += s->front ? 0.0f : 1.0f;
 }
 
-/* The surface that an eye ray meets. */
-typedef struct EyeSurface {
-  Surface surface;
-  bool is_known; /* of another sample: only light that shadow rays find is asked for (kernels/render/adaptive.cl) */
-} EyeSurface;
-
 /* Once a sample, in one place: from several, compilers make an address of it, and the sums stand in memory. */
 static inline void add_direct(float3 radiance, float* sums) {
   sums[FILM_DIRECT] += radiance.x;
@@ -141,10 +135,8 @@ static inline bool is_bright(float3 v) { return v.x > 0.0f || v.y > 0.0f || v.z 
 
 #ifndef HAS_SPECULAR /* else kernels/render/specular_sample.cl */
 /* Adds what one eye ray finds to sums[FILM_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
- * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. *eye
- * becomes what the ray meets, if anything; where it is known already, light from surfaces is left out. */
-static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, EyeSurface* eye,
-                              float* sums) {
+ * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
+static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   Surface s;
   uint point = FILM_NO_POINT;
   float3 radiance = (float3)(0.0f);
@@ -152,11 +144,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
   float3 diffuse = (float3)(0.0f);
 #endif
   sums[FILM_RAYS] += 1.0f;
-  bool met = eye->is_known;
-  if (met)
-    s = eye->surface;
-  else
-    met = blended_surface(POOL_ARGS, ray, free_ends(), hit, &s, &sums[FILM_RAYS]);
+  const bool met = blended_surface(POOL_ARGS, ray, free_ends(), hit, &s, &sums[FILM_RAYS]);
 #ifdef HAS_AUXILIARY
   add_auxiliary(true, lights, met, &s, (float3)(1.0f), sums);
   add_emission(seen_light(lights, met, &s, ray.direction, only_choice()), sums);
@@ -172,8 +160,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
       radiance += load3(lights.materials[s.material].emission);
 #endif
 #ifdef HAS_RADIOSITY
-      if (!eye->is_known)
-        diffuse = s.albedo * INVERSE_PI * irradiance_from_surfaces(POOL_ARGS, &s, id);
+      diffuse = s.albedo * INVERSE_PI * irradiance_from_surfaces(POOL_ARGS, &s, id);
 #endif
     }
   } else {
@@ -183,8 +170,6 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #ifdef HAS_RADIOSITY
   add_diffuse(diffuse, sums);
 #endif
-  if (met)
-    eye->surface = s;
   return point;
 }
 #endif

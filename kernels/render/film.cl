@@ -47,14 +47,6 @@ static inline void copy_sample(__local PixelSamples* samples, uint from, uint to
     samples->sums[c][to] = samples->sums[c][from];
   samples->points[to] = samples->points[from];
 }
-
-/* Replaces the direct light and the count of rays of a sample that was copied by its own. */
-static inline void keep_light(const float* sums, uint lane, __local PixelSamples* samples) {
-  samples->sums[FILM_DIRECT][lane] = sums[FILM_DIRECT];
-  samples->sums[FILM_DIRECT + 1][lane] = sums[FILM_DIRECT + 1];
-  samples->sums[FILM_DIRECT + 2][lane] = sums[FILM_DIRECT + 2];
-  samples->sums[FILM_RAYS][lane] = sums[FILM_RAYS];
-}
 #endif
 
 /* In one order on every device. */

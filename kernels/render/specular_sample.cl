@@ -96,12 +96,9 @@ static inline void add_first_surface(Lights lights, Ray ray, float t_start, cons
 }
 
 /* Adds what one eye ray finds to sums[SAMPLE_SUMS]; returns the splat that it met first, or FILM_NO_POINT. `hit` is its
- * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. *eye
- * becomes what the ray meets, if anything; where it is known already, light from surfaces and photons is left out, and no ray
- * goes on. */
+ * nearest hit of all, which the caller has traced and not yet counted; the camera is t_start behind the ray's origin. */
 ALWAYS_INLINE
-static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, EyeSurface* eye,
-                              float* sums) {
+static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, float t_start, Hit hit, float* sums) {
   uint point = FILM_NO_POINT;
   float3 throughput = (float3)(1.0f);
   OcclusionEnds ends = free_ends();
@@ -117,18 +114,13 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     float3 direct = (float3)(0.0f), diffuse = (float3)(0.0f), specular = (float3)(0.0f), caustic = (float3)(0.0f);
     bool goes_on = false;
     sums[FILM_RAYS] += 1.0f;
-    bool met = eye->is_known;
-    if (met)
-      s = eye->surface;
-    else
-      met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
+    const bool met = blended_surface(POOL_ARGS, ray, ends, hit, &s, &sums[FILM_RAYS]);
     if (met) {
       const __global Material* material = lights.materials + s.material;
       media = media_before(media, &s, lights.materials);
       throughput *= beer_of(media, lights.materials, s.t);
       if (bounces == 0u) {
         point = s.splat;
-        eye->surface = s;
         add_first_surface(lights, ray, t_start, &s, sums);
       }
       if (s.front && is_lit(material) && (bounces == 0u || bounces < most)) {
@@ -140,7 +132,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
 #endif
         if (reflects_by_cone(material))
           specular += reflection_by_cone(POOL_ARGS, lights, &s, ray.direction);
-        if (has_flag(material, MATERIAL_REFLECTS_DIFFUSELY) && !eye->is_known) {
+        if (has_flag(material, MATERIAL_REFLECTS_DIFFUSELY)) {
 #ifdef HAS_RADIOSITY
           diffuse = s.albedo * INVERSE_PI * irradiance_from_surfaces(POOL_ARGS, &s, id);
 #endif
@@ -155,7 +147,7 @@ static inline uint add_sample(POOL_PARAMS, Lights lights, SampleId id, Ray ray, 
     add_emission(bounces == 0u ? throughput * seen : (float3)(0.0f), sums);
 #endif
     add_seen(throughput * direct, throughput * diffuse, throughput * specular, throughput * caustic, bounces == 0u, sums);
-    if (met && !eye->is_known && bounces < most && !reflects_by_cone(lights.materials + s.material))
+    if (met && bounces < most && !reflects_by_cone(lights.materials + s.material))
       goes_on = scatter_ray(&s, lights.materials, ray.direction, stratified4(id, DIMENSION_SCATTER).xy, &media, &scatter);
     /* No longest survival: what loses nothing goes on for MOST_EYE_BOUNCES. */
     if (!goes_on || !throughput_after(id, bounces, 1.0f, scatter.weight, &throughput))

@@ -49,7 +49,7 @@ typedef struct RenderParams {
   pg_uint path_states[PATH_STATES]; /* bytes 112-623: of the path tracer: the classes of paths that count */
   float emitter_low[3];             /* bytes 624-635: root cube: box around the emitting splats */
   float emitter_high[3];            /* bytes 636-647 */
-  pg_uint adaptive;                 /* bytes 648-651: 1: of pixels of one surface few samples are shaded in full */
+  pg_uint adaptive;                 /* bytes 648-651: 1: of pixels in which nothing changes few samples are shaded */
   pg_uint pad1;
 } RenderParams;
 
