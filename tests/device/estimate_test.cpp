@@ -95,8 +95,7 @@ TEST_CASE("photons are told, and stages that a scene has no use for with the rea
   const Made made = make(context, prepared);
   REQUIRE(told.stage("photon") != nullptr);
   check_factor(told.stage("photon")->items, made.photons, 2.0);
-  // Photons of a launch are as many as its time allows, told and true: a busy machine halves or doubles them.
-  check_factor(static_cast<double>(told.peak_bytes()), made.bytes, 4.0);
+  check_factor(static_cast<double>(told.peak_bytes()), made.bytes, 2.0);
   const api::PictureEstimate plain = api::estimate_picture(api::Prepared(context, corner(0.1, false)));
   CHECK_FALSE(plain.stage("photon")->runs);
   CHECK_FALSE(plain.stage("normals")->runs);
