@@ -237,11 +237,8 @@ private:
     seconds += seconds_since(then);
     const auto stored = static_cast<std::uint64_t>(more * static_cast<double>(some.photons.size()));
     const double items = more * static_cast<double>(some.ledger->aimed);
-    // Launches are as long as those of so few would have grown to be.
-    const double a_launch =
-        launch_seconds * static_cast<double>(some.ledger->aimed) / std::max(1e-9, some.ledger->device_seconds);
     const auto flights_bytes =
-        static_cast<std::uint64_t>(std::min({a_launch, 262144.0, 0.5 * items}) * sizeof(PhotonFlight));
+        static_cast<std::uint64_t>(std::min(double{most_photon_flights}, items) * sizeof(PhotonFlight));
     const std::uint64_t map = photon_map_bytes(std::min<std::uint64_t>(stored, most_stored_photons), pool_);
     StageEstimate& photon = add("photon",
                                 std::to_string(all) + " photons by way of specular surfaces" +

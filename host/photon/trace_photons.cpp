@@ -10,8 +10,18 @@ namespace pointgi {
 
 namespace {
 
-/// Photons of the first launch, of which nothing is known yet, and of any: 16 MiB of flights.
-constexpr std::size_t first_batch = 1u << 12, most_at_once = 1u << 18;
+/// Photons of the first launch, of which nothing is known yet.
+constexpr std::size_t first_batch = 1u << 12;
+
+/// Room for `count` flights: for as many as a later launch may have, so that what is held does not depend on how long
+/// launches take, or where the device refuses that, for these alone.
+Buffer<PhotonFlight> room_for(Session& session, std::size_t count, std::size_t most) {
+  try {
+    return session.allocate<PhotonFlight>(most);
+  } catch (const ResourceError&) {
+    return session.allocate<PhotonFlight>(count);
+  }
+}
 
 void add(const float power[3], std::array<double, 3>& to) {
   for (std::size_t c = 0; c < 3; ++c)
@@ -88,13 +98,13 @@ TracedPhotons trace_photons(Session& session, const DevicePools& pools, const Ph
   if (request.plan.photons == 0) return traced;
   DeviceFlight flight(session, pools, request);
   Pace pace = request.batch > 0 ? Pace(static_cast<double>(request.batch), request.batch, request.batch)
-                                : Pace(first_batch, busy_work_items(session.info()), most_at_once);
+                                : Pace(first_batch, busy_work_items(session.info()), most_photon_flights);
   Buffer<PhotonFlight> flights;
   KeptPhotons kept(control.most_stored, request.lighting.params.seed);
   const auto launch = [&](std::size_t first, std::size_t count) {
     if (flights.size < count) {
       flights = {};
-      flights = session.allocate<PhotonFlight>(count);
+      flights = room_for(session, count, std::min(pace.most(), flight.photons()));
     }
     const double seconds = flight.launch(flights, first, count);
     traced.ledger.device_seconds += seconds;

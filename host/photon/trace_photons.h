@@ -31,6 +31,9 @@ struct TracedPhotons {
 /// As many photons as are kept, 1 GiB.
 constexpr std::size_t most_stored_photons = std::size_t{1} << 25;
 
+/// Photons of a launch, at most: 16 MiB of flights.
+constexpr std::size_t most_photon_flights = std::size_t{1} << 18;
+
 /// How a flight is watched, and bounded.
 struct FlightControl {
   std::function<bool()> stop;                    ///< asked between launches

@@ -1,7 +1,7 @@
 #include "host/radiosity/direct.h"
 #include "host/cl/resource_error.h"
 #include "host/error.h"
-#include "host/passes/variant.h"
+#include "host/radiosity/block_launches.h"
 #include "host/radiosity/point_planes.h"
 #include <cmath>
 
@@ -108,8 +108,7 @@ DeviceDirect::DeviceDirect(Session& session, const DevicePools& pools, const Tra
   irradiance_ = session_.allocate<cl_float>(3 * static_cast<std::size_t>(stride_));
   table_ = session_.upload(points.data, points.size);
   ray_count_ = session_.allocate<cl_uint>(1);
-  receive_pace_ =
-      Pace(first_pairs / (FMM_LANES * FMM_LANES), busy_work_items(session_.info()) / fmm_items_on(session_.info()));
+  receive_pace_ = pace_of_blocks(session_, first_pairs / (FMM_LANES * FMM_LANES));
   const Program summing = fmm_program("radiosity/direct/receive_from_all.cl", fmm_lanes_on(session_.info()));
   receive_ = session_.kernel(summing.file, summing.options, "receive_from_all");
   const Program tracing = pairs_program(variant, voxels_of(occupancy_));
@@ -127,7 +126,7 @@ void DeviceDirect::receive(const Band& band, const Buffer<cl_float>& flux) {
     before.push_back(before.back() + (row < band.first ? band.end - band.first : band.end));
   for_each_batch(WeighedItems{before}, receive_pace_, {}, [&](std::size_t first, std::size_t count) {
     const double seconds =
-        session_.launch(receive_, LaunchShape::line(count * fmm_items_on(session_.info()), group),
+        session_.launch(receive_, line_of_blocks(session_, count, group),
                         launch_of(band, static_cast<cl_uint>(first), static_cast<cl_uint>(count), 0, band.end),
                         band.tiles, point_buffer_, flux, irradiance_);
     apply_seconds_ += seconds;

@@ -1,5 +1,5 @@
 #include "host/radiosity/fmm.h"
-#include "host/passes/variant.h"
+#include "host/radiosity/block_launches.h"
 #include "host/radiosity/point_planes.h"
 #include <algorithm>
 #include <stdexcept>
@@ -41,7 +41,7 @@ DeviceFmm::Rows DeviceFmm::upload(const SourceLists& lists) {
 
 DeviceFmm::Jobs DeviceFmm::make_jobs(const std::vector<cl_uint4>& items, const std::vector<double>& costs) {
   Jobs jobs;
-  jobs.pace = Pace(first_pairs, busy_work_items(session_.info()) / fmm_items_on(session_.info()));
+  jobs.pace = pace_of_blocks(session_, first_pairs);
   jobs.items = session_.upload(items);
   jobs.cost.assign(1, 0.0);
   for (const double cost : costs)
@@ -154,8 +154,8 @@ DeviceFmm::DeviceFmm(Session& session, const ClusterTree& tree, View<Link> links
 template <class Launch>
 void DeviceFmm::in_pieces(Jobs& jobs, const Launch& launch) {
   for_each_batch(WeighedItems{jobs.cost}, jobs.pace, {}, [&](std::size_t first, std::size_t count) {
-    const double seconds = launch(LaunchShape::line(count * fmm_items_on(session_.info()), group_),
-                                  static_cast<cl_uint>(first), static_cast<cl_uint>(count));
+    const double seconds =
+        launch(line_of_blocks(session_, count, group_), static_cast<cl_uint>(first), static_cast<cl_uint>(count));
     device_seconds_ += seconds;
     return seconds;
   });

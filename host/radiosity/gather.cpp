@@ -1,5 +1,6 @@
 #include "host/radiosity/gather.h"
 #include "host/error.h"
+#include "host/radiosity/block_launches.h"
 #include "host/radiosity/point_planes.h"
 #include <algorithm>
 #include <cmath>
@@ -126,8 +127,7 @@ void DeviceGather::make_bands() {
   }
   const double row_pairs = static_cast<double>(FMM_LANES) * sender_count_;
   trace_pace_ = Pace(first_pairs / row_pairs, 1);
-  receive_pace_ =
-      Pace(100.0 * first_pairs / row_pairs, busy_work_items(session_.info()) / fmm_items_on(session_.info()));
+  receive_pace_ = pace_of_blocks(session_, 100.0 * first_pairs / row_pairs);
 }
 
 SenderRows DeviceGather::launch_of(const Band& band, std::size_t first, std::size_t rows, unsigned pass) const {
@@ -169,7 +169,7 @@ void DeviceGather::trace(Band& band, unsigned pass) {
 void DeviceGather::receive(const Band& band, unsigned pass, const Buffer<cl_float>& flux) {
   const std::size_t group = session_.info().is_cpu ? 8 : 32;
   for_each_batch(EqualItems{band.end - band.first}, receive_pace_, {}, [&](std::size_t first, std::size_t count) {
-    const LaunchShape shape = LaunchShape::line(count * fmm_items_on(session_.info()), group);
+    const LaunchShape shape = line_of_blocks(session_, count, group);
     const SenderRows at = launch_of(band, first, count, pass);
     if (is_monte_carlo(options_))
       return session_.launch(receive_, shape, at, band.seen, device_windows_, members_, point_planes_, flux,
