@@ -53,14 +53,16 @@ std::string follow_link(const std::string& path) {
 }
 
 /// A hidden name beside `target` that no other run is likely to choose; O_EXCL settles the rest.
+/// What the names of temporary files of a target begin with. A name may have 255 bytes: it leaves room for the suffix.
+std::string temporary_prefix(const std::string& target) {
+  return "." + fs::path(target).filename().string().substr(0, 180) + ".";
+}
+
 std::string temporary_name(const std::string& target) {
   static thread_local std::random_device entropy;
-  const fs::path path(target);
-  // A name may have 255 bytes: leave room for the suffix.
-  const std::string stem = path.filename().string().substr(0, 180);
   char suffix[64];
-  std::snprintf(suffix, sizeof suffix, ".%ld.%08x.tmp", static_cast<long>(getpid()), entropy());
-  return (fs::path(folder_of(target)) / ("." + stem + suffix)).string();
+  std::snprintf(suffix, sizeof suffix, "%ld.%08x.tmp", static_cast<long>(getpid()), entropy());
+  return (fs::path(folder_of(target)) / (temporary_prefix(target) + suffix)).string();
 }
 
 } // namespace
@@ -133,6 +135,21 @@ void AtomicFile::commit() {
     (void)::fsync(folder);
     ::close(folder);
   }
+}
+
+void remove_unfinished(const std::string& final_path) {
+  const std::string prefix = temporary_prefix(final_path);
+  std::error_code ignored;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder_of(final_path), ignored)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t rest = name.size() - prefix.size(); // "<process>.<8 digits>.tmp"
+    if (name.rfind(prefix, 0) == 0 && entry.path().extension() == ".tmp" &&
+        std::count(name.end() - static_cast<std::ptrdiff_t>(rest), name.end(), '.') == 2)
+      left.push_back(entry.path());
+  }
+  for (const fs::path& file : left)
+    fs::remove(file, ignored);
 }
 
 } // namespace pointgi

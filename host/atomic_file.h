@@ -44,4 +44,7 @@ private:
   bool committed_ = false;
 };
 
+/// Removes what runs that were killed have left of an AtomicFile of this path: nobody else may be writing it.
+void remove_unfinished(const std::string& final_path);
+
 } // namespace pointgi

@@ -1,6 +1,5 @@
 #include "host/api/parts.h"
-#include "host/cache/binary_cache.h"
-#include "host/lights/environment_map.h"
+#include "host/api/scene_hash.h"
 #include "host/run.h"
 #include "host/scene/load_sections.h"
 #include "host/stages/view_warnings.h"
@@ -52,37 +51,6 @@ PixelWindow window_of(const FilmOptions& options, const RenderSettings& render) 
   return {x0, x1, y0, y1};
 }
 
-/// What else the light depends on, as text: the integrator and its paths, the exchange between surfaces, photons.
-std::string settings_text(const pointgi::Scene& scene, const std::string& integrator, const std::string& paths) {
-  const RadiositySettings& r = scene.radiosity;
-  const CausticSettings& c = scene.caustics;
-  const std::string radiosity =
-      fmt::format("{} {} {} {} {} {:a} {:a} {} {} {} {:a} {} {} {} {} {} {} {} {} {} {} {} {} {}", r.method, r.order,
-                  r.vmap_samples, r.point_samples, r.vmap_rays.value_or(-1), r.epsilon, r.tolerance, r.vmap,
-                  r.direct_light, r.light_samples.value_or(0), r.least_share, r.directions, r.direction_set, r.share,
-                  r.sampling, r.window, r.reciprocity.value_or(true), r.visibility_cache.value_or(true), r.visibility,
-                  r.voxels, r.passes, r.cones, r.anisotropic, r.at);
-  return fmt::format("{} {} {}; {}; {} {} {} {:a} {} {}", integrator, paths,
-                     name_of(scene.camera.backfaces.value_or(Backfaces::shade)), radiosity, c.photons, c.gather_k,
-                     c.power, c.max_radius.value_or(0.0), c.feedback, c.indirect);
-}
-
-/// What the picture depends on: splats, lights, camera and samples, as the device reads them, and `settings`.
-std::uint64_t hash_of(const Pool<OctreePoint>& points, const DeviceLighting& lighting, const std::string& settings) {
-  const auto bytes = [](const auto& v) {
-    return std::string_view(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(v[0]));
-  };
-  std::uint64_t hash = fnv1a(bytes(points), fnv1a(settings));
-  hash = fnv1a(bytes(lighting.light_sources), hash);
-  hash = fnv1a(bytes(lighting.materials), hash);
-  if (lighting.sky != nullptr) {
-    const SkyMap frame = device_sky_map(*lighting.sky);
-    hash = fnv1a(std::string_view(reinterpret_cast<const char*>(&frame), sizeof frame), hash);
-    hash = fnv1a(bytes(lighting.sky->texels), hash);
-  }
-  return fnv1a(std::string_view(reinterpret_cast<const char*>(&lighting.params), sizeof lighting.params), hash);
-}
-
 } // namespace
 
 FilmJob::FilmJob(Light::Parts& light, const FilmOptions& options)
@@ -124,13 +92,9 @@ PictureAttributes FilmJob::attributes() const {
   const DeviceInfo& device = prepared.context->session.info();
   PictureAttributes attributes;
   const std::string integrator = light_.options.path_tracing ? "path" : "pointgi";
-  char hash[17];
-  std::snprintf(hash, sizeof hash, "%016llx",
-                static_cast<unsigned long long>(
-                    hash_of(prepared.ready.points, lighting_, settings_text(view_, integrator, paths_))));
   attributes.text["software"] = "pointgi " POINTGI_VERSION;
   attributes.text["pointgi/device"] = device.name + " (" + device.platform + ")";
-  attributes.text["pointgi/scene_hash"] = hash;
+  attributes.text["pointgi/scene_hash"] = scene_hash(prepared.ready.points, lighting_, view_, integrator, paths_);
   attributes.text["pointgi/quality"] = prepared.quality;
   attributes.text["pointgi/integrator"] = integrator;
   if (!paths_.empty()) attributes.text["pointgi/paths"] = paths_;

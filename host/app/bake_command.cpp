@@ -1,8 +1,10 @@
 #include "host/api/parts.h"
+#include "host/api/scene_hash.h"
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
 #include "host/app/light_command.h"
 #include "host/app/output_files.h"
+#include "host/app/resume.h"
 #include "host/app/stats.h"
 #include "host/cloud/input_file.h"
 #include "host/stages/lit_file.h"
@@ -70,7 +72,11 @@ ExitCode run_bake(const BakeOptions& options) {
   api::LightOptions solving{false, false};
   if (options.passes) solving.pass_file = options.output;
   solving.pass_content = content;
-  const api::Light light(prepared, solving, run.control());
+  const std::unique_ptr<Checkpoint> checkpoint =
+      open_checkpoint(options, options.output, checkpoint_key(prepared, "bake", nullptr));
+  const CheckpointScope kept(checkpoint.get());
+  const api::Light light =
+      resumable(checkpoint.get(), options.output, [&] { return api::Light(prepared, solving, run.control()); });
   stages.skip("photon", specular ? "a lit cloud holds no caustics" : "no specular material");
   stages.skip("render", "a lit cloud is no picture: it has no camera");
   if (options.sky) light.sky(run.control());
@@ -85,6 +91,7 @@ ExitCode run_bake(const BakeOptions& options) {
     stats.command = "bake";
     write_stats(options.stats_file, stats, stages);
   }
+  close_checkpoint(checkpoint.get(), options.output, false);
   run.end_progress();
   std::printf("%s\n", options.output.c_str());
   spdlog::info("{} lit points, {}", prepared.size(), duration_text(stages.seconds()));

@@ -20,6 +20,8 @@ struct LightOptions {
   std::string quality = "normal";     ///< a name of host/scene/presets.h
   std::vector<std::string> overrides; ///< key.path=value
   std::string stats_file;
+  bool resume = false;              ///< go on from what an earlier run has kept
+  double checkpoint_seconds = 10.0; ///< work that took as long is kept
   bool quiet = false;
 };
 

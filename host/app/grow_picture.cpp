@@ -90,8 +90,9 @@ public:
   GrownPicture run() {
     context_.stages.start("render");
     film_->load_kernels();
+    if (!goal_.is_open()) film_->go_on_from_checkpoint();
     double noise = std::numeric_limits<double>::infinity();
-    for (int now = 0; !stop_asked();) {
+    for (int now = static_cast<int>(film_->samples()); !stop_asked();) {
       const int next = next_samples(goal_, now, left(), noise);
       if (next <= now || !grow(now, next)) break; // enough, interrupted, or the time is over
       now = next;

@@ -103,6 +103,13 @@ CLI::Option* add_light_options(CLI::App& command, LightOptions& options, Common&
       ->take_all()
       ->expected(1);
   command.add_option("--stats", options.stats_file, "write figures of the run to this JSON file");
+  command.add_flag("--resume", options.resume,
+                   "go on where an earlier run of the same command was ended, from the folder beside the output in "
+                   "which it has kept what it had finished");
+  command
+      .add_option("--checkpoint-seconds", options.checkpoint_seconds,
+                  "what took at least so many seconds is kept for --resume until the run is done (default 10; 0: all)")
+      ->check(CLI::Range(0.0, 1e9));
   return to;
 }
 

@@ -77,6 +77,7 @@ bool film_fits(const api::Prepared& prepared, double pixels, bool has_open_goal,
 MadePictureFiles make_picture_at_once(const PictureRun& run, PictureOutput& output) {
   api::Context::Parts& context = *run.context.parts();
   MadePictureFiles made;
+  const CheckpointScope checkpoint(run.checkpoint);
   if (output.denoises()) require_denoise_memory(run.pixels);
   made.light = light_of(run, run.control);
   api::FilmJob job(*made.light->parts(), run.film);
@@ -117,6 +118,7 @@ MadePictureFiles make_growing_picture(const PictureRun& run, PictureGoal goal, c
       if (goal.seconds_a_sample == 0.0) goal.seconds_a_sample = cost.seconds_a_sample;
     }
     if (before_light) before_light(goal, cost);
+    const CheckpointScope checkpoint(run.checkpoint);
     made.light = light_of(run, in_time);
     api::FilmJob job(*made.light->parts(), run.film);
     const GrownPicture grown = grow_picture(*run.context.parts(), job, goal, output, run.control);

@@ -2,6 +2,7 @@
 /// From a prepared scene to the files of its picture, at once or getting better.
 #include "host/app/grow_picture.h"
 #include "host/app/preview.h"
+#include "host/cache/checkpoint.h"
 #include <memory>
 
 namespace pointgi {
@@ -13,6 +14,7 @@ struct PictureRun {
   bool by_paths;
   double pixels; ///< of its window
   const RunControl& control;
+  Checkpoint* checkpoint = nullptr; ///< of the light and the film; null: nothing is kept
 };
 
 struct MadePictureFiles {

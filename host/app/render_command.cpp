@@ -1,4 +1,5 @@
 #include "host/api/estimate.h"
+#include "host/api/scene_hash.h"
 #include "host/app/choose_setting.h"
 #include "host/app/command_run.h"
 #include "host/app/commands.h"
@@ -7,7 +8,9 @@
 #include "host/app/numbers.h"
 #include "host/app/output_files.h"
 #include "host/app/progress.h"
+#include "host/app/resume.h"
 #include "host/app/stats.h"
+#include "host/atomic_file.h"
 #include "host/scene/presets.h"
 #include "host/stages/scene_kind.h"
 #include "host/stages/view_warnings.h"
@@ -65,6 +68,10 @@ api::Scene checked_scene(const RenderOptions& options, const std::vector<std::st
   if (options.quality != "normal" && has_open_goal(options))
     throw Error(ErrorKind::usage, std::string("--quality: the settings follow from ") +
                                       (options.seconds ? "--time" : "--error") + "; leave one of the two out");
+  if (options.resume && has_open_goal(options))
+    throw Error(ErrorKind::usage, std::string("--resume: what is to be done follows from ") +
+                                      (options.seconds ? "--time" : "--error") +
+                                      ", which a run that was ended has changed; leave one of the two out");
   std::vector<std::string> overrides = chosen;
   for (const std::string& own : picture_overrides_of(options))
     overrides.push_back(own);
@@ -274,10 +281,17 @@ ExitCode run_render(const RenderOptions& options) {
                        description.render.auto_exposure ? std::nullopt
                                                         : std::optional<double>(description.render.exposure),
                        std::move(denoiser));
-  const PictureRun picture{context, prepared, film, options.integrator == "path", pixels, run.control()};
-  const MadePictureFiles made =
-      growing ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), before_light, output)
-              : make_picture_at_once(picture, output);
+  std::unique_ptr<Checkpoint> checkpoint;
+  if (options.resume) remove_unfinished(output.png_path());
+  if (!has_open_goal(options))
+    checkpoint = open_checkpoint(options, output.exr_path(), checkpoint_key(prepared, options.integrator, &film));
+  const PictureRun picture{context,       prepared,        film, options.integrator == "path", pixels,
+                           run.control(), checkpoint.get()};
+  const MadePictureFiles made = resumable(checkpoint.get(), output.exr_path(), [&] {
+    return growing
+               ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), before_light, output)
+               : make_picture_at_once(picture, output);
+  });
   if (description.render.auto_exposure)
     spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,
                  output.png_light().exposure);
@@ -293,6 +307,7 @@ ExitCode run_render(const RenderOptions& options) {
     spdlog::warn("{} is written as it was rendered", output.exr_path());
     throw Error(*output.denoised()->failure);
   }
+  close_checkpoint(checkpoint.get(), output.exr_path(), made.interrupted);
   if (made.interrupted) {
     spdlog::warn("interrupted: {}", made.told);
     return ExitCode::interrupted;

@@ -1,4 +1,5 @@
 #include "host/render/growing_film.h"
+#include "host/render/kept_bands.h"
 #include "host/render/resolve.h"
 #include <algorithm>
 #include <utility>
@@ -9,6 +10,18 @@ GrowingFilm::GrowingFilm(Session& session, const DevicePools& pools, const Rende
     : request_(request), passes_(session, pools, request), width_(request.window.x1 - request.window.x0),
       height_(request.window.y1 - request.window.y0),
       bands_(static_cast<std::size_t>((height_ + band_rows - 1) / band_rows)), samples_(bands_.size(), 0) {}
+
+void GrowingFilm::go_on_from_checkpoint() {
+  is_kept_ = true;
+  const std::size_t row = passes_.film_channels() * static_cast<std::size_t>(width_);
+  for (std::size_t b = 0; b < bands_.size(); ++b) {
+    std::optional<BandSums> kept = kept_band<BandSums>("film-", static_cast<int>(b) * band_rows);
+    const int rows = std::min(band_rows, height_ - static_cast<int>(b) * band_rows);
+    if (!kept || kept->sums.size() != row * static_cast<std::size_t>(rows)) continue;
+    bands_[b] = std::move(kept->sums);
+    samples_[b] = kept->samples;
+  }
+}
 
 std::vector<float> GrowingFilm::tile_of(std::size_t band, int column, int columns) const {
   const std::size_t channels = passes_.film_channels(), row = channels * static_cast<std::size_t>(width_);
@@ -41,6 +54,7 @@ void GrowingFilm::grow(pg_uint samples, const std::function<void(double)>& progr
     if (totals_.interrupted) return;
     bands_[b] = std::move(sums);
     samples_[b] = samples;
+    if (is_kept_) keep_band(current_checkpoint(), "film-", first_row, BandSums{bands_[b], samples});
   }
 }
 

@@ -11,6 +11,9 @@ public:
   /// `request`: its samples do not matter. Borrows all three. Throws as render() does.
   GrowingFilm(Session& session, const DevicePools& pools, const RenderRequest& request);
 
+  /// From now on what has grown is kept in this thread's checkpoint, and what that has of an earlier run is there.
+  void go_on_from_checkpoint();
+
   /// Until each pixel has `samples` in all. Ends early where `stop` says so: rows that were finished then have more
   /// samples than the others. `progress`: share of what is added, 0..1.
   void grow(pg_uint samples, const std::function<void(double)>& progress, const std::function<bool()>& stop);
@@ -33,6 +36,7 @@ private:
   std::vector<std::vector<float>> bands_; ///< sums of each, [rows x width x film_channels]; empty: nothing yet
   std::vector<pg_uint> samples_;          ///< of each band
   RenderTotals totals_;
+  bool is_kept_ = false; ///< in the checkpoint
 };
 
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #include "host/render/render.h"
 #include "host/render/band_passes.h"
+#include "host/render/kept_bands.h"
 #include "host/render/resolve.h"
 #include <algorithm>
 #include <future>
@@ -14,6 +15,7 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   const pg_uint samples = request.lighting.params.samples;
   RenderTotals totals;
   totals.of_object.resize(request.first_ids.size);
+  Checkpoint* const checkpoint = current_checkpoint();
   std::future<void> taken; // the band before, while the device is busy with the next
   const auto finish_taking = [&] {
     if (!taken.valid()) return;
@@ -22,18 +24,28 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
   };
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
-    Band band = empty_band(request, row, rows);
-    const TileFilms films{{}, [&](int column, int columns, const std::vector<float>& film) {
-                            resolve_tile(film.data(), passes.film_channels(), column, columns, request, samples, band,
-                                         totals);
-                          }};
-    passes.run(
-        {row, rows, 0, samples}, films, totals,
-        [&](double share) { progress((row + rows * share) / static_cast<double>(height)); }, stop);
+    std::optional<FinishedBand> kept = kept_band<FinishedBand>("rows-", row);
+    const bool is_kept = kept.has_value();
+    FinishedBand made = is_kept ? std::move(*kept) : FinishedBand{empty_band(request, row, rows), {}};
+    if (!is_kept) {
+      made.totals.of_object.resize(request.first_ids.size);
+      const TileFilms films{{}, [&](int column, int columns, const std::vector<float>& film) {
+                              resolve_tile(film.data(), passes.film_channels(), column, columns, request, samples,
+                                           made.band, made.totals);
+                            }};
+      passes.run(
+          {row, rows, 0, samples}, films, made.totals,
+          [&](double share) { progress((row + rows * share) / static_cast<double>(height)); }, stop);
+      made.totals.lit = is_lit(made.band);
+    }
     finish_taking();
+    totals.interrupted = made.totals.interrupted;
+    add(made.totals, totals);
     if (totals.interrupted) return totals;
-    totals.lit = totals.lit || is_lit(band);
-    taken = std::async(std::launch::async, [&take, done = std::move(band)] { take(done); });
+    taken = std::async(std::launch::async, [&take, checkpoint, is_kept, row, done = std::move(made)] {
+      take(done.band);
+      if (!is_kept) keep_band(checkpoint, "rows-", row, done);
+    });
   }
   finish_taking();
   return totals;

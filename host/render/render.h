@@ -70,7 +70,8 @@ struct RenderRequest {
 
 /// Renders the window's rows from the top and hands finished bands to `take`, after each launch `progress` (share done,
 /// 0..1); stops between launches when `stop` says so (the rows finished so far have been handed over). `take` is called
-/// from another thread, for one band at a time, while the next is rendered.
+/// from another thread, for one band at a time, while the next is rendered. Bands that this thread's checkpoint has are
+/// handed over as an earlier run made them.
 RenderTotals render(Session& session, const DevicePools& pools, const RenderRequest& request,
                     const std::function<void(const Band&)>& take, const std::function<void(double)>& progress,
                     const std::function<bool()>& stop);

@@ -1,7 +1,7 @@
 /// Direct light of the points: by shafts, by shadow rays, from the sky.
 #include "host/radiosity/point_irradiance.h"
 #include "host/run.h"
-#include "host/stages/indirect_stages.h"
+#include "host/stages/kept_light.h"
 #include "host/stages/stage_watch.h"
 #include <algorithm>
 
@@ -101,16 +101,19 @@ std::optional<ShaftLight> shaft_light_of(Session& session, const DevicePools& po
   if (request.variant.patches) return skip("patches of the surface stick out of shafts");
   stages.start("shafts");
   const StageWatch watch(session);
-  ShaftLight light = light_through_shafts(request.points, lighting);
-  std::vector<std::uint32_t> unknown;
-  for (std::uint32_t i = 0; i < light.known.size(); ++i)
-    if (light.known[i] == 0) unknown.push_back(i);
-  const std::vector<float> by_rays = session.download(
-      direct_irradiance_of_points(session, pools, request.variant, without_environment(lighting), request.frame.side,
-                                  request.points.size, direct_light_samples(request, true), true, stop_asked,
-                                  View<std::uint32_t>(unknown)),
-      3 * request.points.size);
-  add_light_by_rays(by_rays, light);
+  ShaftLight light = kept_or_made<ShaftLight>("shafts", [&] {
+    ShaftLight made = light_through_shafts(request.points, lighting);
+    std::vector<std::uint32_t> unknown;
+    for (std::uint32_t i = 0; i < made.known.size(); ++i)
+      if (made.known[i] == 0) unknown.push_back(i);
+    const std::vector<float> by_rays = session.download(
+        direct_irradiance_of_points(session, pools, request.variant, without_environment(lighting), request.frame.side,
+                                    request.points.size, direct_light_samples(request, true), true, stop_asked,
+                                    View<std::uint32_t>(unknown)),
+        3 * request.points.size);
+    add_light_by_rays(by_rays, made);
+    return made;
+  });
   stages.finish(request.points.size, "points");
   log_info("shafts: {:.0f} % of the points see all of their lamps, or nothing; the others ask shadow rays",
            100.0 * static_cast<double>(light.known_points) /

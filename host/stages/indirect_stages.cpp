@@ -2,6 +2,7 @@
 #include "host/error.h"
 #include "host/photon/trace_photons.h"
 #include "host/run.h"
+#include "host/stages/kept_light.h"
 #include "host/stages/require_memory.h"
 #include "host/stages/stage_watch.h"
 #include "octree/parallel.h"
@@ -195,6 +196,16 @@ const std::vector<float>& entered(const IndirectLight& light) {
   return light.entered.empty() ? light.direct : light.entered;
 }
 
+/// All irradiance that surfaces pass on besides from_surfaces, where photons bring some.
+std::vector<float> entering_light(const IndirectRequest& request, const std::vector<float>& direct) {
+  std::vector<float> entering;
+  if (request.caustic.size == 0) return entering;
+  entering = direct;
+  for (std::size_t i = 0; i < request.caustic.size; ++i)
+    entering[i] += request.caustic[i];
+  return entering;
+}
+
 /// What enters first: lights, what shines, and photons by way of specular surfaces. light.direct: that of lamps and
 /// [[light]]s, if it is there already; `sky`: likewise.
 RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, const ExchangeScene& exchange,
@@ -216,11 +227,7 @@ RadiosityField run_exchange(Session& session, std::optional<RadiosityMap> map, c
   light.direct = sum_of(std::move(light.direct), sky);
   std::vector<float> emitted;
   if (emitters_exchange) emitted = emitted_radiosity(request.lighting, request.points);
-  if (request.caustic.size != 0) {
-    light.entered = light.direct;
-    for (std::size_t i = 0; i < request.caustic.size; ++i)
-      light.entered[i] += request.caustic[i];
-  }
+  light.entered = entering_light(request, light.direct);
   if (request.after_pass)
     light.prepared->after_pass = [&](unsigned pass, const std::vector<float>& irradiance) {
       IndirectLight so_far;
@@ -244,10 +251,8 @@ void report_solution(const IndirectLight& light, const Solution& solution) {
   if (const std::string complaint = complaint_of(solution); !complaint.empty()) log_warning("radiosity: {}", complaint);
 }
 
-} // namespace
-
-IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
-                                  StageLog& stages) {
+IndirectLight solve_indirect_light(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                   StageLog& stages) {
   IndirectLight light;
   const RadiositySettings& settings = request.scene.radiosity;
   light.method = radiosity_method(settings.method);
@@ -299,15 +304,62 @@ IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, co
   return light;
 }
 
+/// What the stages would have left besides the light of an earlier run.
+void go_on_from_kept(Session& session, const DevicePools& pools, const IndirectRequest& request, StageLog& stages,
+                     IndirectLight& light) {
+  const char* const reason = "an earlier run has kept its light";
+  stages.skip("vmap", reason);
+  stages.skip(light.method != nullptr ? light.method->name : radiosity_methods().front()->name, reason);
+  log_info("radiosity: {}", reason);
+  if (light.method == nullptr) return;
+  light.entered = entering_light(request, light.direct);
+  light.prepare = [&session, &pools, &request, &stages, method = light.method] {
+    const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
+    const ExchangeScene exchange = exchange_scene(pools, request, exchanging);
+    std::optional<RadiosityMap> map;
+    if (method->without_vmap == nullptr) map = run_vmap(session, exchange, request, {}, {}, stages);
+    stages.start(method->name);
+    StageWatch watch(session);
+    auto prepared = method->prepare(session, exchange, request.scene.radiosity, std::move(map), watch.report());
+    stages.finish(request.points.size, "points");
+    return prepared;
+  };
+}
+
+/// By which light was solved, or may be.
+PreparedRadiosity& prepared_of(IndirectLight& light) {
+  if (light.prepared == nullptr) light.prepared = light.prepare();
+  return *light.prepared;
+}
+
+} // namespace
+
+IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
+                                  StageLog& stages) {
+  if (!reason_against_radiosity(request).empty()) return solve_indirect_light(session, pools, request, stages);
+  bool made = false;
+  IndirectLight light = kept_or_made<IndirectLight>("exchange", [&] {
+    made = true;
+    return solve_indirect_light(session, pools, request, stages);
+  });
+  if (!made) go_on_from_kept(session, pools, request, stages, light);
+  return light;
+}
+
 std::vector<float> add_exchange(Session& session, const IndirectRequest& request, View<float> entering, double share,
                                 IndirectLight& light, StageLog& stages) {
   const RadiosityMethod& method = *light.method;
   if (!method.is_linear)
     throw std::logic_error("radiosity: light added to what a method that is not linear has solved");
-  stages.start(method.name);
-  StageWatch watch(session);
+  bool made = false;
   const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
-  RadiosityField field = light.prepared->solve({entering, {}}, tolerance, watch.report());
+  RadiosityField field = kept_or_made<RadiosityField>("exchange-again", [&] {
+    PreparedRadiosity& prepared = prepared_of(light);
+    stages.start(method.name);
+    StageWatch watch(session);
+    made = true;
+    return prepared.solve({entering, {}}, tolerance, watch.report());
+  });
   if (light.entered.empty()) light.entered = light.direct;
   for (std::size_t i = 0; i < light.from_surfaces.size(); ++i) {
     light.from_surfaces[i] += field.irradiance[i];
@@ -315,13 +367,19 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   }
   light.solution.applies += field.solution.applies;
   if (field.solution.end != SolveEnd::converged) light.solution.end = field.solution.end;
-  light.rays = light.prepared->rays();
+  if (!made) return std::move(field.irradiance);
+  light.rays = std::max(light.rays, light.prepared->rays());
   stages.finish(request.points.size, "points");
   report_solution(light, field.solution);
   return std::move(field.irradiance);
 }
 
 void finish_exchange(const IndirectRequest& request, IndirectLight& light) {
+  const RadiositySettings& settings = request.scene.radiosity;
+  if (light.prepare && light.prepared == nullptr && light.method->name == std::string("cones") &&
+      settings.at == "pixels")
+    prepared_of(light);
+  light.prepare = {};
   if (light.prepared != nullptr) {
     std::vector<float> radiosity = reflected_radiosity(request, {entered(light), light.from_surfaces});
     if (direct_light_by_radiosity(request.scene)) {

@@ -23,6 +23,7 @@ struct IndirectLight {
                                                ///< it is not `direct` alone
   std::optional<DeviceCones> at_pixels;        ///< by which pixels gather from_surfaces themselves; absent: they do not
   std::unique_ptr<PreparedRadiosity> prepared; ///< by which it was solved, for light that enters besides
+  std::function<std::unique_ptr<PreparedRadiosity>()> prepare; ///< makes that where an earlier run has solved it
 };
 
 /// The scene as the stages before have left it.
@@ -84,8 +85,9 @@ ExchangePlan plan_exchange(Session& session, const ExchangeScene& exchange, cons
 unsigned direct_light_samples(const IndirectRequest& request, bool with_emitters);
 
 /// Runs `plan` where the scene leaves the method open, `vmap`, and the stage of the method, which has the method's
-/// name, where the scene needs them, and says of each stage that does not run why. Throws Error(interrupted) when the
-/// run (host/run.h) is to stop.
+/// name, where the scene needs them, and says of each stage that does not run why. Where a checkpoint has the light,
+/// it is that. All three and the request must outlive finish_exchange(). Throws Error(interrupted) when the run
+/// (host/run.h) is to stop.
 IndirectLight run_indirect_stages(Session& session, const DevicePools& pools, const IndirectRequest& request,
                                   StageLog& stages);
 

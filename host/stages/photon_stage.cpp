@@ -2,6 +2,7 @@
 #include "host/error.h"
 #include "host/photon/diffuse_photons.h"
 #include "host/run.h"
+#include "host/stages/kept_light.h"
 #include <algorithm>
 #include <cmath>
 
@@ -30,8 +31,11 @@ template <typename Send>
 void fly(const IndirectRequest& request, Caustics& caustics, StageLog& stages, const Send& send) {
   stages.start("photon");
   const std::size_t room = room_for(request, caustics);
-  TracedPhotons traced = send(FlightControl{stop_asked, [](double share) { report_progress(share); }, room});
-  if (traced.stopped) throw interruption();
+  TracedPhotons traced = kept_or_made<TracedPhotons>("photon", [&] {
+    TracedPhotons made = send(FlightControl{stop_asked, [](double share) { report_progress(share); }, room});
+    if (made.stopped) throw interruption();
+    return made;
+  });
   const PhotonLedger& ledger = traced.ledger;
   stages.finish(ledger.aimed, "photons", ledger.device_seconds);
   log_info("caustics: {} photons set out from specular splats: {} stored, {} absorbed, {} escaped, {} cut off",

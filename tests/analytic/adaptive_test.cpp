@@ -51,7 +51,7 @@ Means means_of(const std::string& scene, const char* adaptive, int first_seed) {
 
 } // namespace
 
-TEST_CASE("few samples of pixels in which nothing changes do not bias the mean") {
+TEST_CASE("few samples of pixels in which nothing changes do not bias the mean", "[long]") {
   // A grid; a whole one; one and a part of one; one and a pass that is no grid.
   const int spp = GENERATE(16, 32, 40, 50);
   const std::string rest = "[radiosity]\nmethod = \"none\"\n";

@@ -223,7 +223,7 @@ double traced_mean(const std::string& paths, const std::string& spp) {
 
 } // namespace
 
-TEST_CASE("with caustics.feedback diffuse surfaces pass on what mirrors throw on them") {
+TEST_CASE("with caustics.feedback diffuse surfaces pass on what mirrors throw on them", "[long]") {
   const double without = mean(render_text(indirect_scene("16", "photons = 200000\n")), "Diffuse.G");
   const Picture picture = render_text(indirect_scene("16", "photons = 200000\nfeedback = true\n"));
   const double added = mean(picture, "Diffuse.G") - without, truth = traced_mean("LS+DD+E", "16384");

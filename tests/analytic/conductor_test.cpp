@@ -63,7 +63,7 @@ std::string plane_in_sky(double degrees, const std::string& its_material) {
 
 } // namespace
 
-TEST_CASE("rough metal in a uniform sky sends back what single scattering leaves") {
+TEST_CASE("rough metal in a uniform sky sends back what single scattering leaves", "[long]") {
   CHECK(single_scattering(1.0, 0.0) == Approx(1.0 - std::log(2.0)).epsilon(1e-3)); // D = 1 / pi, G2 = 2 c / (1 + c)
   std::printf("roughness  angle   integral  pointgi     path\n");
   for (const double roughness : {0.2, 0.5, 0.8, 1.0})

@@ -76,7 +76,7 @@ TEST_CASE("cones: a room with a bright spot under its ceiling is the path tracer
   }
 }
 
-TEST_CASE("a lobe's cone finds the blurred reflection that the path tracer finds") {
+TEST_CASE("a lobe's cone finds the blurred reflection that the path tracer finds", "[long]") {
   const std::string gloss =
       GENERATE(std::string("phong\"\nalbedo = [0.2, 0.2, 0.2]\nspecular = [0.6, 0.6, 0.6]\nexponent = 400"),
                std::string("conductor\"\nreflectance = [0.8, 0.8, 0.8]\nroughness = 0.1"));

@@ -87,7 +87,7 @@ std::array<double, 3> furnace_errors(const std::vector<Splat>& splats, const Rad
 
 } // namespace
 
-TEST_CASE("furnaces through the V-map: B = E / (1 - rho)") {
+TEST_CASE("furnaces through the V-map: B = E / (1 - rho)", "[long]") {
   RadiositySettings settings;
   settings.tolerance = 1e-4;
   SECTION("rho = 0.5 and 0.9 as radiosity comes") {

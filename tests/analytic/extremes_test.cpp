@@ -1,50 +1,11 @@
 /// The program keeps its promises at the extremes of truths.md §2.
-#include "tests/support/number.h"
-#include "tests/support/render.h"
+#include "tests/support/extreme_scenes.h"
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 using namespace pointgi;
 using namespace pointgi::test;
-
-namespace {
-
-std::string numbers(double x, double y, double z) {
-  char text[120];
-  std::snprintf(text, sizeof text, "[%.17g, %.17g, %.17g]", x, y, z);
-  return text;
-}
-
-/// A ball on a floor under a point light and a lamp, the whole scaled by s about the origin and then moved by m on
-/// every axis; the point light's power goes with s², so that the picture stays the same.
-std::string ball_scene(double s, double m = 0.0, double power = 30.0, const std::string& more = "") {
-  const auto at = [&](double x, double y, double z) { return numbers(s * x + m, s * y + m, s * z + m); };
-  const auto along = [&](double x, double y, double z) { return numbers(s * x, s * y, s * z); };
-  return "version = 1\n[render]\nsize = [64, 48]\nspp = 32\n" + more + "[camera]\nposition = " + at(0.3, 1.2, 3.0) +
-         "\nlook_at = " + at(0.0, 0.4, 0.0) +
-         "\nfov_deg = 40.0\n"
-         "[[material]]\nname = \"grey\"\ntype = \"diffuse\"\nalbedo = [0.6, 0.6, 0.6]\n"
-         "[[shape]]\ntype = \"sphere\"\ncentre = " +
-         at(0.0, 0.5, 0.0) + "\nradius = " + number(0.5 * s) + "\nspacing = " + number(0.04 * s) +
-         "\nmaterial = \"grey\"\n[[shape]]\ntype = \"quad\"\ncorner = " + at(-1.5, 0.0, -1.5) +
-         "\nedge_u = " + along(0.0, 0.0, 3.0) + "\nedge_v = " + along(3.0, 0.0, 0.0) +
-         "\nspacing = " + number(0.05 * s) +
-         "\nmaterial = \"grey\"\n[[light]]\ntype = \"point\"\nposition = " + at(0.7, 1.9, 0.8) +
-         "\npower_w = " + numbers(power * s * s, power * s * s, power * s * s) + "\n";
-}
-
-/// Share of the samples' weight that changed: mean |a - b| over mean b. A rounded coordinate may move a sample across a
-/// shadow's edge, which a mean forgives and a largest difference does not.
-double mean_difference(const Picture& a, const Picture& b) {
-  double sum = 0.0;
-  const auto &x = a.channels.at("R"), &y = b.channels.at("R");
-  for (std::size_t i = 0; i < x.size(); ++i)
-    sum += std::fabs(static_cast<double>(x[i]) - y[i]);
-  return sum / static_cast<double>(x.size()) / mean(b, "R");
-}
-
-} // namespace
 
 TEST_CASE("the same scene at 1e-6 and 1e6 times the size is the same picture") {
   const Picture truth = render_text(ball_scene(1.0));
@@ -72,7 +33,8 @@ TEST_CASE("the picture is linear in the light's power, from 1e-20 to 1e20") {
   }
 }
 
-TEST_CASE("form, branching, capacity and depth do not change the picture, storage and groups not a bit of it") {
+TEST_CASE("form, branching, capacity and depth do not change the picture, storage and groups not a bit of it",
+          "[long]") {
   // By "fmm": which directions a point draws depends on its place in the order.
   const std::string scene = ball_scene(1.0) + "[radiosity]\nmethod = \"fmm\"\n";
   const auto with = [&](const std::vector<std::string>& settings) {
@@ -164,38 +126,6 @@ TEST_CASE("ten thousand lights are as bright as their sum") {
   // over a disc follows its gradient (host/lights/shaft_light.h): 2e-3.
   CHECK(mean_difference(picture, render_text(ball_scene(1.0))) < 3e-3);
 }
-
-namespace {
-
-/// A sphere of radius 1 with normals as an ascii PLY, and more lines behind its points.
-std::string sphere_ply(int count, const std::vector<std::string>& more) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count + static_cast<int>(more.size())) +
-                     "\nproperty double x\nproperty double y\nproperty double z\nproperty float nx\nproperty float ny\n"
-                     "property float nz\nend_header\n";
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - 2.0 * (i + 0.5) / count, r = std::sqrt(1.0 - z * z), a = 2.399963229728653 * i;
-    const std::string p = number(r * std::cos(a)) + " " + number(r * std::sin(a)) + " " + number(z);
-    text += p + " " + p + "\n";
-  }
-  for (const std::string& line : more)
-    text += line + "\n";
-  return text;
-}
-
-Picture render_ply(const std::string& text) {
-  const TemporaryFolder folder;
-  RenderOptions options;
-  options.input = folder.write("cloud.ply", text);
-  options.output = folder.file("cloud.exr");
-  options.size = "64x48";
-  options.quiet = true;
-  options.overrides = {"camera.position=[0.0, 0.0, 5.0]", "camera.look_at=[0.0, 0.0, 0.0]",
-                       "environment.radiance=[1.0, 1.0, 1.0]"};
-  if (run_render(options) != ExitCode::done) throw std::runtime_error("the picture was not finished");
-  return read_exr(options.output);
-}
-
-} // namespace
 
 TEST_CASE("an outlier at a million times the size, bad points, a pile of points: the picture of the clean cloud") {
   const Picture truth = render_ply(sphere_ply(4000, {}));

@@ -30,7 +30,7 @@ Picture render_with(const std::string& scene, const std::string& integrator, int
 
 } // namespace
 
-TEST_CASE("the highlight of a small lamp on a glossy floor has little noise") {
+TEST_CASE("the highlight of a small lamp on a glossy floor has little noise", "[long]") {
   const std::string integrator = GENERATE("pointgi", "path");
   const std::string scene = floor_and_lamp(2000.0, 0.015, 6000.0);
   const Picture converged = render_with(scene, integrator, 2048, 77);
@@ -41,7 +41,7 @@ TEST_CASE("the highlight of a small lamp on a glossy floor has little noise") {
   CHECK(error <= 0.05); // 2 where the lobe alone is sampled
 }
 
-TEST_CASE("highlights are the same by both integrators, whatever lobe and lamp") {
+TEST_CASE("highlights are the same by both integrators, whatever lobe and lamp", "[long]") {
   const double exponent = GENERATE(5.0, 50.0, 2000.0), radius = GENERATE(0.015, 0.5);
   CAPTURE(exponent, radius);
   const std::string scene = floor_and_lamp(exponent, radius, radius < 0.1 ? 6000.0 : 10.0);

@@ -117,7 +117,7 @@ bool everywhere(const Splat&) {
 
 } // namespace
 
-TEST_CASE("every method: furnaces, B = E / (1 - rho)") {
+TEST_CASE("every method: furnaces, B = E / (1 - rho)", "[long]") {
   for (const Way& way : ways())
     for (const auto& splats : {inside_sphere(2000), inside_cube(18)}) {
       Exchange furnace(of_albedo(splats, 0.5f, 0.9f, 0.0f), way);
@@ -130,7 +130,7 @@ TEST_CASE("every method: furnaces, B = E / (1 - rho)") {
     }
 }
 
-TEST_CASE("every method: form factors between faces of a cube, coaxial discs, and a part of a sphere") {
+TEST_CASE("every method: form factors between faces of a cube, coaxial discs, and a part of a sphere", "[long]") {
   for (const Way& way : ways()) {
     CAPTURE(way.name);
     Exchange cube(of_albedo(inside_cube(24), 0, 0, 0), way);
@@ -166,7 +166,8 @@ TEST_CASE("every method: form factors between faces of a cube, coaxial discs, an
   }
 }
 
-TEST_CASE("every method: a room with a block, a body and a lamp, point by point as the solver of every pair") {
+TEST_CASE("every method: a room with a block, a body and a lamp, point by point as the solver of every pair",
+          "[long]") {
   const CacheFolder empty; // or the V-map of an earlier run is what is tested
   const LitRoom room(session(), 5000);
   const ExchangeScene scene{room.pools, room.variant, room.points, {}};

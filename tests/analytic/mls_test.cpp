@@ -76,7 +76,8 @@ void compare(const Model& model, int side, Likeness& discs, Likeness& patches) {
 
 } // namespace
 
-TEST_CASE("patches of scans: silhouettes of the mesh, normals nearer to it than those of blended discs, no holes") {
+TEST_CASE("patches of scans: silhouettes of the mesh, normals nearer to it than those of blended discs, no holes",
+          "[long]") {
   const Model model = GENERATE(Model{"bunny.ply", {0.3, 0.2, 1.8}}, Model{"horse.ply", {1.5, 0.4, 1.0}},
                                Model{"dragon.ply", {0.4, 0.3, 1.8}});
   if (!scan_path(model.file)) return;

@@ -152,7 +152,7 @@ TEST_CASE("two seeds agree within their variance, and the variance tells the noi
   }
 }
 
-TEST_CASE("a bias of 1 % in one material is found in its own pixels") {
+TEST_CASE("a bias of 1 % in one material is found in its own pixels", "[long]") {
   const std::vector<std::string> many = {"render.spp=2048"};
   const Picture truth = trace(room(), "", 1, many);
   const LightTest right = test_of_light(trace(room(), "", 2, many), truth),

@@ -49,7 +49,7 @@ Compared compare(const std::string& shapes, const std::string& path_class) {
 // Measured: 1.6, 1.4 and 3.2 % darker than paths: the estimate's loss at the discs' rims, where it reaches for photons
 // beyond, and the lamp's splats that stick out of its rim, which paths meet. The paths' noise is below 1 %.
 
-TEST_CASE("photons stored on what stands in glass are as bright as paths find it") {
+TEST_CASE("photons stored on what stands in glass are as bright as paths find it", "[long]") {
   const Compared c = compare(disc("0.0, 0.0, 0.0", "0.0, 1.0, 0.0", "0.3", "white") +
                                  disc("0.0, 1.6, -0.6", "0.0, -1.6, 0.6", "0.5", "lamp"),
                              "LS+DS+E");
@@ -58,7 +58,7 @@ TEST_CASE("photons stored on what stands in glass are as bright as paths find it
   CHECK(c.photons == Approx(c.paths).epsilon(0.05));
 }
 
-TEST_CASE("photons of a lamp that stands in glass are as bright as paths find them") {
+TEST_CASE("photons of a lamp that stands in glass are as bright as paths find them", "[long]") {
   const Compared c = compare(disc("0.0, 0.0, 0.0", "0.0, -1.0, 0.0", "0.2", "lamp") +
                                  disc("0.0, -0.8, 0.0", "0.0, 1.0, 0.0", "1.0", "white"),
                              "LS+DS*E");

@@ -34,7 +34,7 @@ double edge_coverage(const Picture& picture, bool horizontal) {
 
 } // namespace
 
-TEST_CASE("an edge through a pixel's middle covers half of it, at every number of samples") {
+TEST_CASE("an edge through a pixel's middle covers half of it, at every number of samples", "[long]") {
   const TemporaryFolder folder;
   std::ofstream(folder.file("disc.ply"))
       << "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty "

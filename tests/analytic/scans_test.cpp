@@ -101,7 +101,7 @@ double mesh_coverage(const PointCloud& mesh, const Picture& picture) {
 
 } // namespace
 
-TEST_CASE("scans: the right side lit, no pinholes") {
+TEST_CASE("scans: the right side lit, no pinholes", "[long]") {
   for (const char* name :
        {"bunny.ply", "dragon.ply", "horse.ply", "lion_takanawa.ply", "kinect_region_growing_rgb.ply", "pond.ply"}) {
     const auto path = scan_path(name);
@@ -128,7 +128,7 @@ TEST_CASE("scans: the right side lit, no pinholes") {
   }
 }
 
-TEST_CASE("scans: coverage equals the triangle mesh's within 1 %") {
+TEST_CASE("scans: coverage equals the triangle mesh's within 1 %", "[long]") {
   for (const char* name : {"bunny.ply", "dragon.ply"}) {
     const auto path = scan_path(name);
     if (!path) {

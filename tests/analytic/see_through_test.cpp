@@ -45,7 +45,7 @@ TEST_CASE("a closed room seen through its near walls keeps its light, by both in
   CHECK(largest(render_text(closed_room("")), "R") == 0.0);
 }
 
-TEST_CASE("the picture behind backs is the same in every form, grouping and pass") {
+TEST_CASE("the picture behind backs is the same in every form, grouping and pass", "[long]") {
   const auto render_by = [](const char* form, const char* grouping) {
     return render_text(closed_room(see_through), [&](RenderOptions& options) {
       options.overrides = {std::string("traversal.form=") + form, std::string("traversal.grouping=") + grouping};

@@ -154,7 +154,7 @@ TEST_CASE("points of the exchange receive a map's light as the path tracer finds
   CHECK(mean(ours, "Diffuse.G") == Approx(mean(truth, "Diffuse.G")).epsilon(0.03)); // its own noise and clusters'
 }
 
-TEST_CASE("the background and a mirror show the texels that rays lead to") {
+TEST_CASE("the background and a mirror show the texels that rays lead to", "[long]") {
   const MapFile map(spotted_image(16, 8));
   const auto colours = [](const Picture& picture) {
     return Vector3d(mean(picture, "R"), mean(picture, "G"), mean(picture, "B"));
@@ -183,7 +183,7 @@ TEST_CASE("the background and a mirror show the texels that rays lead to") {
   }
 }
 
-TEST_CASE("lobes see a map by sampled light and by their own rays together as by their own rays alone") {
+TEST_CASE("lobes see a map by sampled light and by their own rays together as by their own rays alone", "[long]") {
   RgbImage image = smooth_image();
   for (std::size_t k = 0; k < 3; ++k) // a bright pixel near where the camera's ray is mirrored to, 45 degrees ahead
     image.rgb[3 * (8 * 64 + 33) + k] = 60.0f;
@@ -230,7 +230,7 @@ TEST_CASE("photons of a map carry its flux by way of a mirror") {
   CHECK(stored == Approx(emitted).epsilon(1e-3));                                          // all of it meets the wall
 }
 
-TEST_CASE("a glass ball throws the light of a map onto a floor as paths find it") {
+TEST_CASE("a glass ball throws the light of a map onto a floor as paths find it", "[long]") {
   // A patch of sky 22 degrees wide, which paths meet by chance often enough to be compared with.
   const MapFile map(
       grey_image(32, 16, [](int x, int y) { return x >= 15 && x < 17 && y >= 3 && y < 5 ? 50.0f : 0.2f; }));

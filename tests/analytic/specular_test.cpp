@@ -26,7 +26,7 @@ void check_sum_of_channels(const Picture& picture) {
 
 } // namespace
 
-TEST_CASE("spheres that lose no light vanish in a uniform environment") {
+TEST_CASE("spheres that lose no light vanish in a uniform environment", "[long]") {
   const std::string type = GENERATE("mirror", "glass");
   const double spacing = GENERATE(0.1, 0.05);
   CAPTURE(type, spacing);
@@ -132,7 +132,7 @@ double between_mirrors(double reflectance, double half) {
 
 } // namespace
 
-TEST_CASE("mirrors that face each other end, and lose what they absorb and no more") {
+TEST_CASE("mirrors that face each other end, and lose what they absorb and no more", "[long]") {
   const double reflectance = GENERATE(0.9, 1.0);
   const std::string scene = head("0.0, 0.0, 0.5", "0.0, 0.0, 0.0", 60.0, 32) + environment(1.0) +
                             material("mirror", "mirror", "reflectance = " + grey(reflectance)) +
@@ -183,7 +183,7 @@ TEST_CASE("furnace with glass and mirrors in it: E/(1 - rho), through shadow ray
         Approx(2.0).epsilon(0.02)); // all but what has three stretches of S on the way
 }
 
-TEST_CASE("Phong surfaces under a uniform sky and under a point light") {
+TEST_CASE("Phong surfaces under a uniform sky and under a point light", "[long]") {
   const double exponent = GENERATE(1.0, 50.0);
   CAPTURE(exponent);
   const std::string surface =
@@ -212,7 +212,7 @@ TEST_CASE("Phong surfaces under a uniform sky and under a point light") {
   CHECK(mean(trace(lit, "LSE"), "R") == Approx(highlight).epsilon(0.01));
 }
 
-TEST_CASE("the picture of a room with mirror, glass and a glossy floor is the path tracer's, caustics too") {
+TEST_CASE("the picture of a room with mirror, glass and a glossy floor is the path tracer's, caustics too", "[long]") {
   struct Room {
     const char* name;
     bool mirror, glass;

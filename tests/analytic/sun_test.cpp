@@ -102,7 +102,7 @@ TEST_CASE("sun and sky light a floor by radiance, solid angle and cosine") {
   }
 }
 
-TEST_CASE("the sun's disc is seen, and seen in a mirror, as bright as it is") {
+TEST_CASE("the sun's disc is seen, and seen in a mirror, as bright as it is", "[long]") {
   const Noon noon;
   const Vector3d above(0.0, 5.0, 0.0), mirrored(noon.towards.x(), -noon.towards.y(), noon.towards.z());
   for (const char* integrator : {"pointgi", "path"}) {
@@ -137,7 +137,7 @@ TEST_CASE("a blocker takes the sun away and leaves the sky") {
   }
 }
 
-TEST_CASE("lobes see the sun by sampled light and by their own rays together as by their own rays alone") {
+TEST_CASE("lobes see the sun by sampled light and by their own rays together as by their own rays alone", "[long]") {
   const Noon noon;
   const Vector3d mirrored(noon.towards.x(), -noon.towards.y(), noon.towards.z());
   const std::string lobes[] = {

@@ -165,7 +165,7 @@ TEST_CASE("emission is what a lamp sends to the eye, without what the lamp refle
   }
 }
 
-TEST_CASE("what guides a denoiser changes no bit of the picture beside it") {
+TEST_CASE("what guides a denoiser changes no bit of the picture beside it", "[long]") {
   const bool by_paths = GENERATE(false, true);
   const bool specular = GENERATE(false, true);
   std::string scene = narrow_view + square(-3.0, 0.1, "wall") + square(2.0, 4.0, "wall", false) +

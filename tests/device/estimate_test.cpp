@@ -51,7 +51,7 @@ void check_factor(double told, double true_value, double factor) {
 
 } // namespace
 
-TEST_CASE("bytes and rays of a picture are told within a factor of 2, by every method", "[estimate]") {
+TEST_CASE("bytes and rays of a picture are told within a factor of 2, by every method", "[estimate][long]") {
   const api::Context context;
   const char* cases[][2] = {
       {"method=\"fmm\"", ""},

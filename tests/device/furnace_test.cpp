@@ -36,7 +36,7 @@ void check_furnace(Room& room) {
 
 } // namespace
 
-TEST_CASE("furnace: sphere") {
+TEST_CASE("furnace: sphere", "[long]") {
   Room room = room_of(inside_sphere(20000));
   check_furnace(room);
   // Closed, nothing absorbs: said so at once, not iterated for ever.

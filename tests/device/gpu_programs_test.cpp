@@ -44,7 +44,7 @@ void make_picture(Session& session, Scene scene, const std::optional<LightPaths>
 
 } // namespace
 
-TEST_CASE("every program that a GPU is asked for when the demo is rendered is checked for GPUs") {
+TEST_CASE("every program that a GPU is asked for when the demo is rendered is checked for GPUs", "[long]") {
   const CacheFolder empty; // a V-map that is kept would ask for nothing, a stored profile for another variant
   std::set<std::pair<std::string, std::string>> checked;
   for (const ProgramUse& use : all_programs())

@@ -133,7 +133,7 @@ TEST_CASE("the device's linear scan of patches agrees with the host's, which fin
   CHECK(static_cast<double>(different) <= 2e-3 * static_cast<double>(counted));
 }
 
-TEST_CASE("every form and grouping meets a patch where a linear scan does") {
+TEST_CASE("every form and grouping meets a patch where a linear scan does", "[long]") {
   const bool sheets = GENERATE(false, true), clipped = sheets;
   CAPTURE(sheets);
   const Patches p = random_patches(sheets, clipped);

@@ -78,7 +78,7 @@ std::vector<RayAnswer> trace_all(const std::vector<Splat>& splats, const std::ve
 
 } // namespace
 
-TEST_CASE("a million hard rays find the splat that a linear scan finds, through every kernel and order") {
+TEST_CASE("a million hard rays find the splat that a linear scan finds, through every kernel and order", "[long]") {
   const auto splats = mixed_splats();
   const auto rays = hard_rays(splats, 1'000'000, 11);
   const auto truth = trace_all(splats, rays);
@@ -149,7 +149,7 @@ TEST_CASE("rays that are no numbers meet nothing, through every kernel") {
   }
 }
 
-TEST_CASE("any-hit says what closest-hit says, and blending agrees between the forms") {
+TEST_CASE("any-hit says what closest-hit says, and blending agrees between the forms", "[long]") {
   const auto splats = mixed_splats();
   const auto rays = hard_rays(splats, 100'000, 31);
   const auto truth = trace_all(splats, rays);
@@ -177,7 +177,7 @@ TEST_CASE("any-hit says what closest-hit says, and blending agrees between the f
   }
 }
 
-TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan says") {
+TEST_CASE("rays that leave a surface pass what belongs to it, as a linear scan says", "[long]") {
   const auto splats = GENERATE(mixed_splats(), sheet_splats(mixed_splats()));
   auto rays = hard_rays(splats, 100'000, 51);
   std::vector<cl_float4> surfaces(rays.size());
@@ -252,7 +252,7 @@ TEST_CASE("packets of rays find what the rays find one by one") {
   }
 }
 
-TEST_CASE("where backs are seen through, every form and grouping finds the nearest front of a linear scan") {
+TEST_CASE("where backs are seen through, every form and grouping finds the nearest front of a linear scan", "[long]") {
   const bool sheets = GENERATE(false, true);
   const auto splats = sheets ? sheet_splats(mixed_splats()) : mixed_splats();
   const auto rays = hard_rays(splats, 50'011, 61);
@@ -280,7 +280,7 @@ TEST_CASE("where backs are seen through, every form and grouping finds the neare
   }
 }
 
-TEST_CASE("every form and grouping meets a clipped disc where a linear scan does") {
+TEST_CASE("every form and grouping meets a clipped disc where a linear scan does", "[long]") {
   const bool sheets = GENERATE(false, true);
   const auto splats = sheets ? sheet_splats(mixed_splats()) : mixed_splats();
   const SplatClips clips = random_clips(splats, 71);

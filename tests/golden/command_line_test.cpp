@@ -339,7 +339,7 @@ TEST_CASE("info tells what a file holds, and devices list and check") {
   CHECK(run_program("devices --json --device 0", "POINTGI_DEVICE=quantum").code == 0);
 }
 
-TEST_CASE("every sample file of other projects ends with 0 or 3 and a place in its message") {
+TEST_CASE("every sample file of other projects ends with 0 or 3 and a place in its message", "[long]") {
   const auto folder = scan_path("parser");
   if (!folder) {
     WARN("the parser samples are not there: skipped");

@@ -134,7 +134,7 @@ TEST_CASE("a growing picture ends as the one that is denoised at once") {
   CHECK(reason_of(stats["stages"], "denoise").empty());
 }
 
-TEST_CASE("pictures of a given time or error are denoised, and those that are interrupted") {
+TEST_CASE("pictures of a given time or error are denoised, and those that are interrupted", "[long]") {
   const FakeOidn fake;
   const TemporaryFolder folder;
   const std::string lit = std::string(small_scene()) + "[environment]\nradiance = [1.0, 1.0, 1.0]\n";

@@ -187,7 +187,7 @@ std::string joined(const std::vector<std::string>& lines, const char* between) {
 
 } // namespace
 
-TEST_CASE("every command of the documentation ends well") {
+TEST_CASE("every command of the documentation ends well", "[long]") {
   const FakeOidn fake; // --denoise is run with it
   std::size_t run_count = 0;
   for (const MarkdownFile& page : pages()) {

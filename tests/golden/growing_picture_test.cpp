@@ -10,7 +10,7 @@ using namespace pointgi;
 using namespace pointgi::test;
 using Catch::Contains;
 
-TEST_CASE("a growing picture is whole whenever it is interrupted") {
+TEST_CASE("a growing picture is whole whenever it is interrupted", "[long]") {
   const TemporaryFolder folder;
   const std::string lit = std::string(small_scene()) + "[environment]\nradiance = [1.0, 1.0, 1.0]\n";
   const std::string scene = folder.write("ball.toml", lit), out = folder.file("x.exr");

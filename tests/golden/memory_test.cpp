@@ -57,7 +57,8 @@ nlohmann::json stats_of_hills(std::size_t side, bool normals, const std::string&
 
 } // namespace
 
-TEST_CASE("three million points with radiosity take at most 200 bytes each on the host and 150 on the device") {
+TEST_CASE("three million points with radiosity take at most 200 bytes each on the host and 150 on the device",
+          "[long]") {
   constexpr std::size_t side = 1733;
   constexpr double points = side * side;
   // Four directions a point: more would only be more hits, of which as many are kept as there is room for.

@@ -57,7 +57,7 @@ const char* reference = "step-n2-buffer-morton-leaf32-ray-8x4";
 
 } // namespace
 
-TEST_CASE("profile measures, checks, tells and stores, and render uses what was stored") {
+TEST_CASE("profile measures, checks, tells and stores, and render uses what was stored", "[long]") {
   const Setting s;
   const Run run = s.profile(std::string("--rounds 2 --store --filter lanes16,leaf32-packet-16x4,morton"));
   REQUIRE(run.code == 0);
@@ -105,7 +105,7 @@ TEST_CASE("profile measures, checks, tells and stores, and render uses what was 
   CHECK_THAT(damaged.err, Contains("it is not used") && Contains("default of"));
 }
 
-TEST_CASE("a variant whose kernels are wrong is rejected and never stored") {
+TEST_CASE("a variant whose kernels are wrong is rejected and never stored", "[long]") {
   const Setting s;
   std::filesystem::copy(POINTGI_SOURCE_DIR "/kernels", s.folder.file("kernels"),
                         std::filesystem::copy_options::recursive);
@@ -145,7 +145,8 @@ TEST_CASE("a variant whose kernels are wrong is rejected and never stored") {
   CHECK_THAT(nothing.err, Contains("differs from a linear scan"));
 }
 
-TEST_CASE("a scene with a mirror has its photons timed, and a variant whose photons end elsewhere is rejected") {
+TEST_CASE("a scene with a mirror has its photons timed, and a variant whose photons end elsewhere is rejected",
+          "[long]") {
   const Setting s;
   s.folder.write("ball.toml", mirror_scene());
   const std::string arguments = std::string("--rounds 1 --filter ") + wide_packet;

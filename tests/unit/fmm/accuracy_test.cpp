@@ -56,7 +56,7 @@ TEST_CASE("fmm against the direct sum: inside of a sphere") {
   check_orders(errors_of_orders(inside_sphere(20000), 5));
 }
 
-TEST_CASE("fmm against the direct sum: inside of a cube") {
+TEST_CASE("fmm against the direct sum: inside of a cube", "[long]") {
   check_orders(errors_of_orders(inside_cube(58), 5));
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("fmm against the direct sum: two facing sheets") {
   check_orders(errors_of_orders(facing_sheets(100), 5));
 }
 
-TEST_CASE("fmm against the direct sum: a scan turned inside out") {
+TEST_CASE("fmm against the direct sum: a scan turned inside out", "[long]") {
   const auto path = scan_path("bunny.ply");
   if (!path) {
     WARN("bunny.ply is not there: skipped");

@@ -51,6 +51,18 @@ TEST_CASE("atomic file: nothing is seen before commit and all of it afterwards")
   CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("atomic file: what killed runs have left of it is removed, and nothing else") {
+  const TemporaryFolder folder;
+  const std::string target = folder.file("x.exr");
+  folder.write(".x.exr.123.0a1b2c3d.tmp", "half");
+  for (const char* other : {".x.exr.y.123.0a1b2c3d.tmp", "x.exr", ".xx.exr.1.2.tmp", ".x.exr.tmp", "x.exr.1.2.tmp"})
+    folder.write(other, "another");
+  remove_unfinished(target);
+  CHECK_FALSE(std::filesystem::exists(folder.file(".x.exr.123.0a1b2c3d.tmp")));
+  CHECK(folder.entries() == 5);
+  remove_unfinished(folder.file("no/such/folder"));
+}
+
 TEST_CASE("atomic file: without commit the old file stays and the temporary goes") {
   TemporaryFolder folder;
   const std::string path = folder.write("a.bin", "old");

@@ -54,7 +54,7 @@ double under_square(double a, double h) {
 
 } // namespace
 
-TEST_CASE("points that know their light see all of the lamp, from every place on their discs") {
+TEST_CASE("points that know their light see all of the lamp, from every place on their discs", "[long]") {
   const Hall hall(true);
   const ShaftLight light = light_through_shafts(hall.splats, hall.lighting);
   std::size_t known = 0, open = 0;

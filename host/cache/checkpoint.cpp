@@ -1,0 +1,175 @@
+#include "host/cache/checkpoint.h"
+#include "host/atomic_file.h"
+#include "host/cache/binary_cache.h"
+#include <filesystem>
+#include <fstream>
+
+namespace pointgi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char magic[8] = {'p', 'g', 'i', 'k', 'e', 'p', 't', '\n'};
+constexpr std::uint32_t version = 1;              ///< to be raised with every change of what is kept
+constexpr std::uint32_t byte_order = 0x01020304u; ///< as this machine writes it
+constexpr const char* extension = ".kept";
+constexpr std::size_t most_waiting_bytes = 64u << 20;
+
+/// File: header, key, bytes.
+struct Header {
+  char magic_word[8];
+  std::uint32_t version, byte_order;
+  std::uint64_t key_size, size;
+  std::uint64_t hash; ///< of key and bytes
+};
+static_assert(sizeof(Header) == 40, "no padding in the file");
+
+thread_local Checkpoint* current = nullptr;
+
+std::uint64_t hash_of(const std::string& key, const std::string& bytes) {
+  return fnv1a(bytes, fnv1a(key));
+}
+
+bool is_kept(const fs::path& file) {
+  return file.extension() == extension;
+}
+
+/// Ours: finished, or begun by a run that was killed.
+bool is_of_checkpoint(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return is_kept(file) || (name[0] == '.' && file.extension() == ".tmp" && name.find(extension) != std::string::npos);
+}
+
+} // namespace
+
+Checkpoint::Checkpoint(CheckpointOptions options) : options_(std::move(options)), begun_(options_.resumes) {}
+
+bool Checkpoint::is_in(const std::string& folder) {
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed))
+    if (is_kept(entry.path())) return true;
+  return false;
+}
+
+std::string Checkpoint::file_of(const std::string& name) const {
+  return (fs::path(options_.folder) / (name + extension)).string();
+}
+
+std::string Checkpoint::numbered(const std::string& name) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return name + "-" + std::to_string(++numbers_[name]);
+}
+
+void Checkpoint::warn(const std::string& text) const {
+  if (options_.warn) options_.warn(text);
+}
+
+std::optional<std::string> Checkpoint::find(const std::string& name) {
+  if (!options_.resumes) return std::nullopt;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::string path = file_of(name);
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) return std::nullopt;
+  const auto refused = [&](const char* what) {
+    warn(path + ": " + what + "; it is not used, and what it should hold is computed again");
+    return std::nullopt;
+  };
+  const std::uint64_t size = fs::file_size(path, failed);
+  std::ifstream file(path, std::ios::binary);
+  Header header{};
+  if (failed || !file.read(reinterpret_cast<char*>(&header), sizeof header)) return refused("cannot be read");
+  if (std::memcmp(header.magic_word, magic, sizeof magic) != 0 || header.version != version ||
+      header.byte_order != byte_order)
+    return refused("is of another version or machine");
+  // Before anything is allocated: sizes of a damaged file may be any number.
+  const std::uint64_t rest = size - sizeof header;
+  if (header.key_size > rest || header.size != rest - header.key_size) return refused("is cut short or too long");
+  std::string key(header.key_size, '\0'), bytes(header.size, '\0');
+  if (!file.read(key.data(), static_cast<std::streamsize>(key.size())) ||
+      !file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    return refused("cannot be read");
+  if (hash_of(key, bytes) != header.hash) return refused("is damaged");
+  if (key != options_.key) return refused("is of another scene, other settings, or another device");
+  ++found_;
+  return bytes;
+}
+
+void Checkpoint::clear() {
+  std::error_code ignored;
+  std::vector<fs::path> ours;
+  for (const auto& entry : fs::directory_iterator(options_.folder, ignored))
+    if (is_of_checkpoint(entry.path())) ours.push_back(entry.path());
+  for (const fs::path& file : ours)
+    fs::remove(file, ignored);
+}
+
+void Checkpoint::write_locked(const std::string& name, const std::string& bytes) {
+  if (failed_) return;
+  if (!begun_) clear();
+  begun_ = true;
+  std::error_code ignored;
+  fs::create_directories(options_.folder, ignored); // or the file says that it is not there
+  Header header{{}, version, byte_order, options_.key.size(), bytes.size(), hash_of(options_.key, bytes)};
+  std::memcpy(header.magic_word, magic, sizeof magic);
+  try {
+    AtomicFile file(file_of(name));
+    file.write(&header, sizeof header);
+    file.write(options_.key.data(), options_.key.size());
+    file.write(bytes.data(), bytes.size());
+    file.commit();
+  } catch (const Error& error) {
+    failed_ = true;
+    warn(std::string(error.what()) + ". The run goes on without keeping what it has done: it could not be resumed");
+  }
+  kept_at_ = Clock::now();
+}
+
+void Checkpoint::keep(const std::string& name, const std::string& bytes) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  write_locked(name, bytes);
+}
+
+void Checkpoint::keep_soon(const std::string& name, std::string bytes) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (failed_) return;
+  std::string& waiting = waiting_[name];
+  waiting_bytes_ += bytes.size() - waiting.size();
+  waiting = std::move(bytes);
+  if (waiting_bytes_ > most_waiting_bytes || is_worth(seconds_since(kept_at_))) flush_locked();
+}
+
+void Checkpoint::flush() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  flush_locked();
+}
+
+void Checkpoint::flush_locked() {
+  for (const auto& [name, bytes] : waiting_)
+    write_locked(name, bytes);
+  waiting_.clear();
+  waiting_bytes_ = 0;
+}
+
+void Checkpoint::remove() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  waiting_.clear();
+  waiting_bytes_ = 0;
+  if (begun_) clear();
+  std::error_code ignored;
+  if (begun_) fs::remove(options_.folder, ignored); // stays where others have put something into it
+}
+
+CheckpointScope::CheckpointScope(Checkpoint* checkpoint) : outer_(current) {
+  current = checkpoint;
+}
+
+CheckpointScope::~CheckpointScope() {
+  current = outer_;
+}
+
+Checkpoint* current_checkpoint() {
+  return current;
+}
+
+} // namespace pointgi
