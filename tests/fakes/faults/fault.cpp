@@ -134,6 +134,7 @@ void report() {
   if (file < 0) return;
   for (Call* call = first_call; call != nullptr; call = call->next) {
     if (call->count > 0) dprintf(file, "count %s %zu\n", call->name, call->count.load());
+    if (call->largest > 0) dprintf(file, "largest %s %zu\n", call->name, call->largest.load());
     if (call->live != 0) dprintf(file, "live %s %ld\n", call->name, call->live.load());
   }
   for (const Place& place : places) {

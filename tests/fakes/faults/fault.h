@@ -6,7 +6,8 @@
 ///   FAULT_CODE=CODE    what it answers: an OpenCL code, an errno, or of write and pwrite 0 for half of the bytes
 ///   FAULT_LASTS=1      from then on all OpenCL calls answer so, but those that release: the device is lost; of
 ///                      "allocation" and system calls: all of the kind fail from then on
-///   FAULT_REPORT=FILE  written at the end: "count NAME N", "place HASH ADDRESS…", "live NAME N", "struck N"
+///   FAULT_REPORT=FILE  written at the end: "count NAME N", "place HASH ADDRESS…", "live NAME N",
+///                      "largest NAME BYTES", "struck N"
 ///   DEVICE_PLATFORM=NAME, DEVICE_LARGEST_BUFFER=BYTES, DEVICE_NO_IMAGES=1   what the device says of itself, and does
 ///   DEVICE_ITEMS_PER_SECOND=N  a clock of its own: N work-items take a second; a launch of over 2 s is ended
 #include <atomic>
@@ -23,7 +24,8 @@ struct Call {
   const char* name;
   bool is_opencl;
   std::atomic<std::size_t> count{0};
-  std::atomic<long> live{0}; ///< objects that it made and that are still there
+  std::atomic<long> live{0};           ///< objects that it made and that are still there
+  std::atomic<std::size_t> largest{0}; ///< bytes of a call
   Call* next;
 };
 

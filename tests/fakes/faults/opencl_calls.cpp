@@ -171,6 +171,7 @@ MAKING(cl_kernel, kernels, all_kernels, clCreateKernel, (cl_program program, con
 cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, std::size_t bytes, void* data, cl_int* code) {
   static auto* const next = real<cl_mem(cl_context, cl_mem_flags, std::size_t, void*, cl_int*)>("clCreateBuffer");
   if (strikes(buffers)) return refused<cl_mem>(code);
+  buffers.largest = std::max(buffers.largest.load(), bytes); // of the one thread that asks
   if (largest_buffer() > 0.0 && static_cast<double>(bytes) > largest_buffer()) {
     if (code != nullptr) *code = CL_INVALID_BUFFER_SIZE;
     return nullptr;

@@ -40,6 +40,7 @@ CallReport read_report(const std::string& path) {
     std::string kind, name;
     words >> kind >> name;
     if (kind == "count") words >> report.counts[name];
+    if (kind == "largest") words >> report.largest[name];
     if (kind == "live") words >> report.live[name];
     if (kind == "place") {
       report.places.push_back(name);
@@ -107,8 +108,8 @@ FaultScene::FaultScene(const Way& way) : way_(way) {
     if (made.code != 0 || !(counts ? calls_ : ignored).is_there)
       throw std::runtime_error("the scene of the faults is not rendered: " + made.err);
   }
-  channels_ = read_exr(folder_of(0) + "/out/a.exr").channels;
-  png_ = contents(folder_of(0) + "/out/a.png");
+  channels_ = read_exr(output("a.exr")).channels;
+  png_ = contents(output("a.png"));
   for (const auto& entry : fs::recursive_directory_iterator(folder_of(0) + "/cache"))
     if (entry.path().extension() == ".vmap") vmap_ = contents(entry.path().string());
 }
@@ -196,7 +197,7 @@ Judgement FaultScene::judge(const Fault& fault, int slot) const {
   if (const std::string wrong = wrong_file(slot, made.code == 0); !wrong.empty()) return broken(wrong);
   if (const std::string wrong = wrong_cache(slot); !wrong.empty()) return broken(wrong);
   // The JSON library loses what it has made of a list for which memory ends: of the reports, after the picture.
-  const bool has_picture = contents(folder_of(slot) + "/out/a.exr") != old_bytes;
+  const bool has_picture = contents(output("a.exr", slot)) != old_bytes;
   for (const auto& [name, count] : report.live)
     if (calls_.live.count(name) == 0 && !(ends_early && has_picture))
       return broken(std::to_string(count) + " " + name + " are not given back");

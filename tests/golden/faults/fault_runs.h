@@ -21,6 +21,7 @@ struct Fault {
 struct CallReport {
   bool is_there = false; ///< not of a run that crashed
   std::map<std::string, std::size_t> counts;
+  std::map<std::string, std::size_t> largest;   ///< bytes of a call
   std::map<std::string, long> live;             ///< objects and blocks that were not given back
   std::vector<std::string> places;              ///< of allocations
   std::map<std::string, std::string> addresses; ///< of a place, in the program, for addr2line
@@ -59,12 +60,13 @@ public:
   Judgement judge(const Fault& fault, int slot = 0) const;
   /// Runs it undisturbed on what the faults of this slot left; `variables` as in Way. Empty, or what is broken.
   std::string undisturbed(const std::string& variables = "", int slot = 0) const;
-  /// The same, with all that the run said. The picture is judged where its exit code is 0.
+  /// The same, with all that the run said, and unjudged.
   Run run(const std::string& variables, const std::string& options, int slot, CallReport& report) const;
 
-private:
-  struct Made; ///< the files of a run
+  /// What the last run of the slot wrote: "a.exr", "a.png", "stats.json", "trace.json".
+  std::string output(const std::string& name, int slot = 0) const { return folder_of(slot) + "/out/" + name; }
 
+private:
   std::string folder_of(int slot) const;
   void put_old_files(int slot) const;
   std::string wrong_file(int slot, bool finished) const;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <iostream>
+#include <set>
 #include <sstream>
 
 using namespace pointgi::test;
@@ -27,13 +28,14 @@ TEST_CASE("every fault ends with the right picture or with one clear error", "[.
   const std::size_t every = every_text.empty() ? 1 : std::max<std::size_t>(1, std::stoul(every_text));
   std::cout << "scene\tkind\tfault points\ttried\tright pictures\tclear errors\tnot met\tfindings\n";
   std::vector<std::string> findings;
+  std::set<std::string> tried; // of allocations: the ways pass through many of the same places
   for (const auto& way : {fmm_way(), directions_way(), images_way(), cached_programs_way()}) {
     const FaultScene scene(way);
     for (const std::string& kind : kinds) {
       const std::vector<Fault> all = faults_of(kind, scene.calls());
       std::vector<Fault> some;
       for (std::size_t i = 0; i < all.size(); i += every)
-        some.push_back(all[i]);
+        if (all[i].call != "allocation" || tried.insert(kind + all[i].at).second) some.push_back(all[i]);
       if (some.empty()) continue;
       const FaultTally tally = try_faults(scene, some);
       std::cout << way.name << '\t' << kind << '\t' << all.size() << '\t' << tally.tried << '\t' << tally.right_pictures
