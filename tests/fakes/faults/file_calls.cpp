@@ -1,6 +1,7 @@
 /// Calls to the file system that the program makes itself, or the standard library for it; a driver's own are let be.
 #include "tests/fakes/faults/fault.h"
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <fcntl.h>
@@ -13,6 +14,7 @@ namespace {
 /// Whether this call fails with the errno that is then set.
 bool fails(faults::Call& call) {
   if (!faults::is_running() || !faults::called_by_program() || !faults::strikes(call)) return false;
+  if (faults::code() == -SIGKILL) raise(SIGKILL);
   errno = faults::code();
   return true;
 }

@@ -83,7 +83,8 @@ std::set<int> codes_for(const std::string& call) {
 } // namespace
 
 std::string Fault::text() const {
-  return call + " " + at + " answers " + std::to_string(code) + (lasts ? ", and all after it" : "");
+  return call + " " + at + (code == kill_there ? " kills" : " answers " + std::to_string(code)) +
+         (lasts ? ", and all after it" : "");
 }
 
 FaultScene::Way fmm_way() {
@@ -146,10 +147,11 @@ Run FaultScene::run(const std::string& variables, const std::string& options, in
 }
 
 /// Each file is the old one or a whole new one; where the run `finished`, new.
-std::string FaultScene::wrong_file(int slot, bool finished) const {
+std::string FaultScene::wrong_file(int slot, bool finished, bool may_leave_temporary) const {
   const std::string folder = folder_of(slot) + "/out/";
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
+    if (may_leave_temporary && entry.path().extension() == ".tmp") continue;
     if (std::find(std::begin(outputs), std::end(outputs), name) == std::end(outputs)) return "leaves the file " + name;
   }
   for (const std::string name : outputs) {
@@ -170,10 +172,10 @@ std::string FaultScene::wrong_file(int slot, bool finished) const {
   return {};
 }
 
-std::string FaultScene::wrong_cache(int slot) const {
+std::string FaultScene::wrong_cache(int slot, bool may_leave_temporary) const {
   for (const auto& entry : fs::recursive_directory_iterator(folder_of(slot) + "/cache")) {
     const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".tmp") return "leaves the file " + name + " in the cache";
+    if (!may_leave_temporary && entry.path().extension() == ".tmp") return "leaves the file " + name + " in the cache";
     if (entry.path().extension() == ".vmap" && contents(entry.path().string()) != vmap_) return "keeps a wrong V-map";
   }
   return {};
@@ -190,12 +192,14 @@ Judgement FaultScene::judge(const Fault& fault, int slot) const {
     return Judgement{Outcome::broken, way_.name + ": " + fault.text() + where + ": " + finding + "; exit code " +
                                           std::to_string(made.code) + ": " + made.err.substr(0, 600)};
   };
-  if (made.code == 137 && !report.is_there) return broken("hangs, or is killed");
+  const bool killed = fault.code == kill_there && made.code == 128 + 9;
+  if (made.code == 137 && !report.is_there && !killed) return broken("hangs, or is killed");
   // Memory that ends in a destructor ends the program there, and no library hears of it.
   const bool ends_early = fault.call == "allocation" && made.code == 6;
-  if (made.code >= 128 || (!report.is_there && !ends_early)) return broken("crashes");
-  if (const std::string wrong = wrong_file(slot, made.code == 0); !wrong.empty()) return broken(wrong);
-  if (const std::string wrong = wrong_cache(slot); !wrong.empty()) return broken(wrong);
+  if (!killed && (made.code >= 128 || (!report.is_there && !ends_early))) return broken("crashes");
+  if (const std::string wrong = wrong_file(slot, made.code == 0, killed); !wrong.empty()) return broken(wrong);
+  if (const std::string wrong = wrong_cache(slot, killed); !wrong.empty()) return broken(wrong);
+  if (killed) return {Outcome::killed, {}};
   // The JSON library loses what it has made of a list for which memory ends: of the reports, after the picture.
   const bool has_picture = contents(output("a.exr", slot)) != old_bytes;
   for (const auto& [name, count] : report.live)
@@ -212,7 +216,7 @@ std::string FaultScene::undisturbed(const std::string& variables, int slot) cons
   CallReport report;
   const Run made = run(variables, "", slot, report);
   if (made.code != 0) return "exit code " + std::to_string(made.code) + ": " + made.err;
-  return wrong_file(slot, true);
+  return wrong_file(slot, true, false);
 }
 
 } // namespace pointgi::test

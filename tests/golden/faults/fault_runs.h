@@ -7,6 +7,9 @@
 
 namespace pointgi::test {
 
+/// As the code of a system call: the program is killed in it.
+constexpr int kill_there = -9;
+
 /// Which call fails; as in tests/fakes/faults/fault.h.
 struct Fault {
   std::string call;
@@ -31,6 +34,7 @@ struct CallReport {
 enum class Outcome {
   right_picture, ///< the call failed, and the picture is the one of an undisturbed run
   clear_error,   ///< one message with a remedy, and an exit code of its own
+  killed,        ///< as was wanted, and its files are old ones or whole new ones
   not_met,       ///< the call never came
   broken,
 };
@@ -69,8 +73,8 @@ public:
 private:
   std::string folder_of(int slot) const;
   void put_old_files(int slot) const;
-  std::string wrong_file(int slot, bool finished) const;
-  std::string wrong_cache(int slot) const;
+  std::string wrong_file(int slot, bool finished, bool may_leave_temporary) const;
+  std::string wrong_cache(int slot, bool may_leave_temporary) const;
 
   Way way_;
   TemporaryFolder folder_;

@@ -72,7 +72,8 @@ std::size_t count_of(const CallReport& calls, const std::string& name) {
 } // namespace
 
 std::vector<std::string> fault_kinds() {
-  return {"build", "buffer", "image", "enqueue", "read", "event", "device", "lost", "file", "allocation", "exhausted"};
+  return {"build",  "buffer", "image", "enqueue", "read",       "event",
+          "device", "lost",   "file",  "killed",  "allocation", "exhausted"};
 }
 
 std::vector<Fault> faults_of(const std::string& kind, const CallReport& calls) {
@@ -88,9 +89,11 @@ std::vector<Fault> faults_of(const std::string& kind, const CallReport& calls) {
       for (std::size_t n = 1; n <= count_of(calls, call); ++n)
         faults.push_back({call, std::to_string(n), n % 2 == 0 ? CL_OUT_OF_RESOURCES : -9999, true});
   for (const FailingFunction& function : failing_functions()) {
-    if (kind != function.kind) continue;
+    const bool kills = kind == "killed" && function.kind == std::string("file");
+    if (kind != function.kind && !kills) continue;
     for (std::size_t n = 1; n <= count_of(calls, function.name); ++n)
-      faults.push_back({function.name, std::to_string(n), function.codes[n % function.codes.size()], false});
+      faults.push_back(
+          {function.name, std::to_string(n), kills ? kill_there : function.codes[n % function.codes.size()], false});
   }
   return faults;
 }
@@ -106,6 +109,7 @@ FaultTally try_faults(const FaultScene& scene, const std::vector<Fault>& faults)
       ++tally.tried;
       tally.right_pictures += judgement.outcome == Outcome::right_picture;
       tally.clear_errors += judgement.outcome == Outcome::clear_error;
+      tally.killed += judgement.outcome == Outcome::killed;
       tally.not_met += judgement.outcome == Outcome::not_met;
       if (judgement.outcome == Outcome::broken) tally.findings.push_back(judgement.finding);
     }

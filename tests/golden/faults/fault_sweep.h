@@ -5,11 +5,12 @@
 namespace pointgi::test {
 
 struct FaultTally {
-  std::size_t tried = 0, right_pictures = 0, clear_errors = 0, not_met = 0;
+  std::size_t tried = 0, right_pictures = 0, clear_errors = 0, killed = 0, not_met = 0;
   std::vector<std::string> findings;
 };
 
-/// "build", "buffer", "image", "enqueue", "read", "event", "device", "lost", "file", "allocation", "exhausted".
+/// "build", "buffer", "image", "enqueue", "read", "event", "device", "lost", "file", "killed", "allocation",
+/// "exhausted".
 std::vector<std::string> fault_kinds();
 
 /// Every fault of the kind that the scene's undisturbed run has a call for: each call of each function, each place of

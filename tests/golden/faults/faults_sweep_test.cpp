@@ -26,7 +26,7 @@ TEST_CASE("every fault ends with the right picture or with one clear error", "[.
   if (kinds.empty()) kinds = fault_kinds();
   const std::string every_text = variable("POINTGI_FAULTS_EVERY");
   const std::size_t every = every_text.empty() ? 1 : std::max<std::size_t>(1, std::stoul(every_text));
-  std::cout << "scene\tkind\tfault points\ttried\tright pictures\tclear errors\tnot met\tfindings\n";
+  std::cout << "scene\tkind\tfault points\ttried\tright pictures\tclear errors\tkilled\tnot met\tfindings" << std::endl;
   std::vector<std::string> findings;
   std::set<std::string> tried; // of allocations: the ways pass through many of the same places
   for (const auto& way : {fmm_way(), directions_way(), images_way(), cached_programs_way()}) {
@@ -39,7 +39,8 @@ TEST_CASE("every fault ends with the right picture or with one clear error", "[.
       if (some.empty()) continue;
       const FaultTally tally = try_faults(scene, some);
       std::cout << way.name << '\t' << kind << '\t' << all.size() << '\t' << tally.tried << '\t' << tally.right_pictures
-                << '\t' << tally.clear_errors << '\t' << tally.not_met << '\t' << tally.findings.size() << std::endl;
+                << '\t' << tally.clear_errors << '\t' << tally.killed << '\t' << tally.not_met << '\t'
+                << tally.findings.size() << std::endl;
       for (const std::string& finding : tally.findings)
         std::cout << "  " << finding << std::endl;
       findings.insert(findings.end(), tally.findings.begin(), tally.findings.end());

@@ -34,7 +34,7 @@ void check_kinds(const FaultScene& scene, const std::vector<std::string>& kinds,
       FAIL_CHECK(finding);
     CHECK(tally.tried > 0);
     CHECK(tally.not_met == 0);
-    CHECK(tally.clear_errors > 0);
+    CHECK(tally.clear_errors + tally.killed > 0);
   }
 }
 
@@ -45,8 +45,25 @@ TEST_CASE("faults: an OpenCL call that fails ends in the right picture or in one
   check_kinds(FaultScene(images_way()), {"image"});
 }
 
+TEST_CASE("faults: a program that the driver does not build is told with the driver's own code", "[faults]") {
+  const FaultScene scene(directions_way());
+  CallReport report;
+  for (const char* lasts : {"", " FAULT_LASTS=1"}) { // with no log to be had, either
+    const Run run =
+        scene.run(std::string("FAULT_CALL=clBuildProgram FAULT_AT=2 FAULT_CODE=-11") + lasts, "", 0, report);
+    CHECK(run.code == 4);
+    for (const char* part : {"error: kernels/", "CL_BUILD_PROGRAM_FAILURE (-11)",
+                             "\ndevice:", "\ndriver:", "\noptions:", "; use another --device"})
+      CHECK_THAT(run.err, Contains(part));
+  }
+}
+
 TEST_CASE("faults: a file that is not read or written leaves the old ones, and one clear error", "[faults]") {
   check_kinds(FaultScene(fmm_way()), {"file"});
+}
+
+TEST_CASE("faults: a run that is killed while it writes leaves old files or whole new ones", "[faults]") {
+  check_kinds(FaultScene(fmm_way()), {"killed"});
 }
 
 TEST_CASE("faults: memory that the host refuses ends in one clear error, once and from then on", "[faults]") {
