@@ -3,6 +3,7 @@
 #include "host/render/resolve.h"
 #include <algorithm>
 #include <future>
+#include <memory>
 
 namespace pointgi {
 
@@ -33,7 +34,9 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
     finish_taking();
     if (totals.interrupted) return totals;
     totals.lit = totals.lit || is_lit(band);
-    taken = std::async(std::launch::async, [&take, done = std::move(band)] { take(done); });
+    // Deferred where there is no thread to be had; a copy, as the library tries both ways with what it is given.
+    const auto take_band = [&take, done = std::make_shared<const Band>(std::move(band))] { take(*done); };
+    taken = std::async(std::launch::async | std::launch::deferred, take_band);
   }
   finish_taking();
   return totals;

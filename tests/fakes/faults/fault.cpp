@@ -34,6 +34,11 @@ bool is(const char* a, const char* b) {
   return a != nullptr && std::strcmp(a, b) == 0;
 }
 
+/// "clFinish", and not "close".
+bool is_opencl(const char* name) {
+  return std::strncmp(name, "cl", 2) == 0 && name[2] < 'a';
+}
+
 /// Code of a library that was there when the program began; drivers come later.
 struct Module {
   std::uintptr_t begin, end, base;
@@ -164,8 +169,7 @@ int watched_main(int argc, char** argv, char** environment) {
 
 } // namespace
 
-Call::Call(const char* call_name)
-    : name(call_name), is_opencl(std::strncmp(call_name, "cl", 2) == 0 && call_name[2] < 'a'), next(first_call) {
+Call::Call(const char* call_name) : name(call_name), is_opencl(faults::is_opencl(call_name)), next(first_call) {
   while (!first_call.compare_exchange_weak(next, this)) {
   }
 }
@@ -176,7 +180,7 @@ bool strikes(Call& call) {
   const Wanted& w = wanted();
   if (w.call == nullptr) return false;
   const bool begins = is(w.call, call.name) && number == w.number;
-  const bool is_later = w.lasts && strikes_so_far > 0 && (call.is_opencl || is(w.call, call.name));
+  const bool is_later = w.lasts && strikes_so_far > 0 && (is_opencl(w.call) ? call.is_opencl : is(w.call, call.name));
   if (begins || is_later) ++strikes_so_far;
   return begins || is_later;
 }

@@ -48,6 +48,7 @@ const std::vector<FailingFunction>& failing_functions() {
       {"device", "clGetDeviceInfo", {resources, host_memory}},
       {"device", "clCreateContext", {CL_DEVICE_NOT_AVAILABLE, host_memory}},
       {"device", "clCreateCommandQueue", {host_memory, resources}},
+      {"thread", "pthread_create", {EAGAIN}},
       {"file", "open", {EACCES, EMFILE, ENOSPC}},
       {"file", "fopen", {EACCES, EMFILE}},
       {"file", "read", {EIO, EINTR, 0}},
@@ -72,8 +73,8 @@ std::size_t count_of(const CallReport& calls, const std::string& name) {
 } // namespace
 
 std::vector<std::string> fault_kinds() {
-  return {"build",  "buffer", "image", "enqueue", "read",       "event",
-          "device", "lost",   "file",  "killed",  "allocation", "exhausted"};
+  return {"build", "buffer", "image", "enqueue", "read",       "event",    "device",
+          "lost",  "thread", "file",  "killed",  "allocation", "exhausted"};
 }
 
 std::vector<Fault> faults_of(const std::string& kind, const CallReport& calls) {

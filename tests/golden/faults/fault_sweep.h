@@ -9,7 +9,7 @@ struct FaultTally {
   std::vector<std::string> findings;
 };
 
-/// "build", "buffer", "image", "enqueue", "read", "event", "device", "lost", "file", "killed", "allocation",
+/// "build", "buffer", "image", "enqueue", "read", "event", "device", "lost", "thread", "file", "killed", "allocation",
 /// "exhausted".
 std::vector<std::string> fault_kinds();
 

@@ -3,6 +3,7 @@
 #include "tests/golden/faults/fault_sweep.h"
 #include "tests/support/stats_file.h"
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <set>
 
 using namespace pointgi::test;
@@ -64,6 +65,15 @@ TEST_CASE("faults: a file that is not read or written leaves the old ones, and o
 
 TEST_CASE("faults: a run that is killed while it writes leaves old files or whole new ones", "[faults]") {
   check_kinds(FaultScene(fmm_way()), {"killed"});
+}
+
+TEST_CASE("faults: threads that are not to be had are done without", "[faults]") {
+  const FaultScene scene(fmm_way());
+  for (const bool all : {false, true}) {
+    const Judgement judgement = scene.judge({"pthread_create", all ? "1" : "2", EAGAIN, all});
+    CAPTURE(all, judgement.finding);
+    CHECK(judgement.outcome == Outcome::right_picture);
+  }
 }
 
 TEST_CASE("faults: memory that the host refuses ends in one clear error, once and from then on", "[faults]") {
