@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <new>
 #include <omp.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -316,25 +317,44 @@ int run(int argc, char** argv) {
   return code_of(run_devices(json, check, environment_or(checked_device, "POINTGI_DEVICE")));
 }
 
+constexpr const char no_memory[] = "out of memory; use a smaller cloud or a coarser spacing";
+
+int fail(ExitCode code, const char* text) {
+  std::fprintf(stderr, "error: %s\n", text);
+  return code_of(code);
+}
+
+std::terminate_handler other_ends = nullptr;
+
+/// Some destructors allocate, as those of the JSON library do. Where they get no memory no exception can pass, and main
+/// would not hear of it.
+[[noreturn]] void end_without_memory() {
+  if (std::current_exception()) try {
+      throw;
+    } catch (const std::bad_alloc&) {
+      std::_Exit(fail(ExitCode::memory, no_memory));
+    } catch (...) { // not ours to explain
+    }
+  if (other_ends != nullptr) other_ends();
+  std::abort();
+}
+
 } // namespace
 
 /// The one place where errors become exit codes.
 int main(int argc, char** argv) {
-  const auto fail = [](pointgi::ExitCode code, const char* text) {
-    std::fprintf(stderr, "error: %s\n", text);
-    return static_cast<int>(code);
-  };
+  other_ends = std::set_terminate(end_without_memory);
   try {
     const int code = run(argc, argv);
-    if (std::fflush(stdout) != 0) return fail(pointgi::ExitCode::output, "stdout cannot be written; is its disk full?");
+    if (std::fflush(stdout) != 0) return fail(ExitCode::output, "stdout cannot be written; is its disk full?");
     return code;
   } catch (const pointgi::Error& error) {
-    return fail(pointgi::exit_code_of(error.kind()), error.what());
+    return fail(exit_code_of(error.kind()), error.what());
   } catch (const std::bad_alloc&) {
-    return fail(pointgi::ExitCode::memory, "out of memory; use a smaller cloud or a coarser spacing");
+    return fail(ExitCode::memory, no_memory);
   } catch (const std::length_error& error) { // more than 32-bit places hold
-    return fail(pointgi::ExitCode::memory, error.what());
+    return fail(ExitCode::memory, error.what());
   } catch (const std::exception& error) {
-    return fail(pointgi::ExitCode::internal, error.what());
+    return fail(ExitCode::internal, error.what());
   }
 }

@@ -23,6 +23,24 @@ std::string build_log(const cl::Program& program, const cl::Device& device) {
   }
 }
 
+/// Throws cl::Error. The C call: the C++ one asks for the log of every build, so that a good build fails and a bad one
+/// loses its code where a driver has no log to give.
+void build_for(const cl::Program& program, const cl::Device& device, const std::string& options) {
+  const cl_device_id id = device();
+  const int code = clBuildProgram(program(), 1, &id, options.c_str(), nullptr, nullptr);
+  if (code != CL_SUCCESS) throw cl::Error(code, "clBuildProgram");
+}
+
+/// Empty where the driver has none to give: the cache can do without.
+std::vector<unsigned char> binary_of(const cl::Program& program) {
+  try {
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    return binaries.empty() ? std::vector<unsigned char>() : binaries.front();
+  } catch (const cl::Error&) {
+    return {};
+  }
+}
+
 } // namespace
 
 const cl::Program& Session::program(const std::string& file, const std::string& options) {
@@ -53,7 +71,7 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
   if (const auto binary = by_driver ? std::nullopt : load_binary(key)) {
     try {
       cl::Program program(context_, devices, cl::Program::Binaries{*binary});
-      program.build(devices, all_options.c_str());
+      build_for(program, device_, all_options);
       ++from_cache_;
       return program;
     } catch (const cl::Error&) {
@@ -64,16 +82,16 @@ cl::Program Session::build(const std::string& file, const std::string& options) 
   try {
     ask_faults({DeviceCall::Kind::build, file, 0, 0});
     program = cl::Program(context_, source);
-    program.build(devices, all_options.c_str());
+    build_for(program, device_, all_options);
   } catch (const cl::Error& error) {
     throw Error(ErrorKind::device, "kernels/" + file + " did not compile: " + cl_error_name(error.err()) +
-                                       "\ndevice:  " + info_.name + " (" + info_.platform + ")\ndriver:  " +
-                                       info_.driver + "\noptions: " + all_options + "\n" + build_log(program, device_));
+                                       "\ndevice:  " + info_.name + " (" + info_.platform +
+                                       ")\ndriver:  " + info_.driver + "\noptions: " + all_options + "\n" +
+                                       build_log(program, device_) + "\n; use another --device, or a newer driver");
   }
   ++(by_driver ? kept_by_driver_ : compiled_);
   if (by_driver) return program;
-  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-  if (!binaries.empty() && !binaries.front().empty()) store_binary(key, binaries.front());
+  if (const auto binary = binary_of(program); !binary.empty()) store_binary(key, binary);
   return program;
 }
 
@@ -98,25 +116,43 @@ std::string cl_error_name(int code) {
     int code;
     const char* name;
   };
-  static constexpr Name names[] = {
-      {CL_DEVICE_NOT_FOUND, "CL_DEVICE_NOT_FOUND"},
-      {CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE"},
-      {CL_COMPILER_NOT_AVAILABLE, "CL_COMPILER_NOT_AVAILABLE"},
-      {CL_MEM_OBJECT_ALLOCATION_FAILURE, "CL_MEM_OBJECT_ALLOCATION_FAILURE"},
-      {CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES"},
-      {CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY"},
-      {CL_IMAGE_FORMAT_NOT_SUPPORTED, "CL_IMAGE_FORMAT_NOT_SUPPORTED"},
-      {CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE"},
-      {CL_INVALID_VALUE, "CL_INVALID_VALUE"},
-      {CL_INVALID_BINARY, "CL_INVALID_BINARY"},
-      {CL_INVALID_BUILD_OPTIONS, "CL_INVALID_BUILD_OPTIONS"},
-      {CL_INVALID_KERNEL_NAME, "CL_INVALID_KERNEL_NAME"},
-      {CL_INVALID_ARG_SIZE, "CL_INVALID_ARG_SIZE"},
-      {CL_INVALID_KERNEL_ARGS, "CL_INVALID_KERNEL_ARGS"},
-      {CL_INVALID_WORK_GROUP_SIZE, "CL_INVALID_WORK_GROUP_SIZE"},
-      {CL_INVALID_BUFFER_SIZE, "CL_INVALID_BUFFER_SIZE"},
-      {CL_INVALID_IMAGE_SIZE, "CL_INVALID_IMAGE_SIZE"},
-  };
+#define NAME(code)                                                                                                     \
+  { code, #code }
+  static constexpr Name names[] = {NAME(CL_DEVICE_NOT_FOUND),
+                                   NAME(CL_DEVICE_NOT_AVAILABLE),
+                                   NAME(CL_COMPILER_NOT_AVAILABLE),
+                                   NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+                                   NAME(CL_OUT_OF_RESOURCES),
+                                   NAME(CL_OUT_OF_HOST_MEMORY),
+                                   NAME(CL_PROFILING_INFO_NOT_AVAILABLE),
+                                   NAME(CL_IMAGE_FORMAT_NOT_SUPPORTED),
+                                   NAME(CL_BUILD_PROGRAM_FAILURE),
+                                   NAME(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+                                   NAME(CL_INVALID_VALUE),
+                                   NAME(CL_INVALID_DEVICE),
+                                   NAME(CL_INVALID_CONTEXT),
+                                   NAME(CL_INVALID_QUEUE_PROPERTIES),
+                                   NAME(CL_INVALID_COMMAND_QUEUE),
+                                   NAME(CL_INVALID_MEM_OBJECT),
+                                   NAME(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR),
+                                   NAME(CL_INVALID_IMAGE_SIZE),
+                                   NAME(CL_INVALID_BINARY),
+                                   NAME(CL_INVALID_BUILD_OPTIONS),
+                                   NAME(CL_INVALID_PROGRAM),
+                                   NAME(CL_INVALID_PROGRAM_EXECUTABLE),
+                                   NAME(CL_INVALID_KERNEL_NAME),
+                                   NAME(CL_INVALID_KERNEL),
+                                   NAME(CL_INVALID_ARG_INDEX),
+                                   NAME(CL_INVALID_ARG_VALUE),
+                                   NAME(CL_INVALID_ARG_SIZE),
+                                   NAME(CL_INVALID_KERNEL_ARGS),
+                                   NAME(CL_INVALID_WORK_GROUP_SIZE),
+                                   NAME(CL_INVALID_WORK_ITEM_SIZE),
+                                   NAME(CL_INVALID_EVENT),
+                                   NAME(CL_INVALID_OPERATION),
+                                   NAME(CL_INVALID_BUFFER_SIZE),
+                                   NAME(CL_INVALID_IMAGE_DESCRIPTOR)};
+#undef NAME
   for (const Name& entry : names)
     if (entry.code == code) return std::string(entry.name) + " (" + std::to_string(code) + ")";
   return "OpenCL error " + std::to_string(code);

@@ -62,7 +62,7 @@ void Session::fail(const cl::Error& error, const std::string& doing, const std::
                                                ". The kernel may need more registers or local memory than there are, a "
                                                "launch may have been lost, or memory is short; use another --device, "
                                                "or a smaller scene if memory is short");
-  throw Error(ErrorKind::device, text);
+  throw Error(ErrorKind::device, text + "; use another --device, or a newer driver");
 }
 
 cl::Kernel Session::kernel(const std::string& file, const std::string& options, const std::string& name) {
@@ -70,25 +70,29 @@ cl::Kernel Session::kernel(const std::string& file, const std::string& options, 
   try {
     return cl::Kernel(built, name.c_str());
   } catch (const cl::Error& error) {
+    if (error.err() != CL_INVALID_KERNEL_NAME) fail(error, "making the kernel " + name);
     throw Error(ErrorKind::internal, "kernels/" + file + " has no kernel " + name + ": " + cl_error_name(error.err()));
   }
 }
 
 void Session::account(const cl::Memory& memory, std::uint64_t bytes) {
-  bytes_->now += bytes;
-  bytes_->peak = std::max(bytes_->peak, bytes_->now.load());
   // The counter outlives the session as long as memory does: whoever holds the last reference ends the count.
   struct Release {
     std::shared_ptr<Bytes> total;
     std::uint64_t bytes;
   };
-  auto* release = new Release{bytes_, bytes};
+  auto release = std::make_unique<Release>(Release{bytes_, bytes});
+  bytes_->now += bytes;
+  bytes_->peak = std::max(bytes_->peak, bytes_->now.load());
   const auto callback = [](cl_mem, void* data) {
     auto* r = static_cast<Release*>(data);
     r->total->now -= r->bytes;
     delete r;
   };
-  if (clSetMemObjectDestructorCallback(memory(), callback, release) != CL_SUCCESS) delete release;
+  if (clSetMemObjectDestructorCallback(memory(), callback, release.get()) == CL_SUCCESS)
+    release.release();
+  else // nobody would say when it is given back, and what is held would only grow
+    bytes_->now -= bytes;
 }
 
 cl::Buffer Session::allocate_bytes(std::size_t bytes, cl_mem_flags flags) {
@@ -208,10 +212,26 @@ cl::Memory Session::upload_image2d(const void* texels, std::size_t count, bool i
 
 namespace {
 
+/// For messages and times, and so of a device that is lost, too.
 std::string name_of(const cl::Kernel& kernel) {
-  std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
-  name.erase(std::find(name.begin(), name.end(), '\0'), name.end());
-  return name;
+  try {
+    std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+    name.erase(std::find(name.begin(), name.end(), '\0'), name.end());
+    return name;
+  } catch (const cl::Error&) {
+    return "a kernel";
+  }
+}
+
+std::string needs_of(const cl::Kernel& kernel, const cl::Device& device, std::size_t items) {
+  const std::string text = std::to_string(items) + " work-items";
+  try {
+    return text + " need " + amount(kernel.getWorkGroupInfo<CL_KERNEL_PRIVATE_MEM_SIZE>(device)) +
+           " of private memory each and " + amount(kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device)) +
+           " of local memory a group";
+  } catch (const cl::Error&) {
+    return text;
+  }
 }
 
 /// What would only fail on the device, or on another device than the developer's.
@@ -240,8 +260,7 @@ void check_launch(const cl::Kernel& kernel, const cl::Device& device, const Devi
 } // namespace
 
 void Session::refuse_argument(const cl::Kernel& kernel, cl_uint index, const cl::Error& error) const {
-  throw Error(ErrorKind::device, info_.name + ": argument " + std::to_string(index) + " of " + name_of(kernel) +
-                                     " was refused: " + cl_error_name(error.err()));
+  fail(error, "giving argument " + std::to_string(index) + " to " + name_of(kernel));
 }
 
 void Session::enqueue(cl::Kernel& kernel, const LaunchShape& shape, cl_uint arguments, cl::Event& event) {
@@ -252,10 +271,7 @@ void Session::enqueue(cl::Kernel& kernel, const LaunchShape& shape, cl_uint argu
     queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(shape.global[0], shape.global[1]),
                                 cl::NDRange(shape.local[0], shape.local[1]), nullptr, &event);
   } catch (const cl::Error& error) {
-    fail(error, "launching " + name_of(kernel),
-         std::to_string(items) + " work-items need " +
-             amount(kernel.getWorkGroupInfo<CL_KERNEL_PRIVATE_MEM_SIZE>(device_)) + " of private memory each and " +
-             amount(kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device_)) + " of local memory a group");
+    fail(error, "launching " + name_of(kernel), needs_of(kernel, device_, items));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "host/render/resolve.h"
 #include <algorithm>
 #include <future>
+#include <memory>
 
 namespace pointgi {
 
@@ -42,10 +43,13 @@ RenderTotals render(Session& session, const DevicePools& pools, const RenderRequ
     totals.interrupted = made.totals.interrupted;
     add(made.totals, totals);
     if (totals.interrupted) return totals;
-    taken = std::async(std::launch::async, [&take, checkpoint, is_kept, row, done = std::move(made)] {
-      take(done.band);
-      if (!is_kept) keep_band(checkpoint, "rows-", row, done);
-    });
+    // Deferred where there is no thread to be had; a copy, as the library tries both ways with what it is given.
+    const auto take_band = [&take, checkpoint, is_kept, row,
+                            done = std::make_shared<const FinishedBand>(std::move(made))] {
+      take(done->band);
+      if (!is_kept) keep_band(checkpoint, "rows-", row, *done);
+    };
+    taken = std::async(std::launch::async | std::launch::deferred, take_band);
   }
   finish_taking();
   return totals;

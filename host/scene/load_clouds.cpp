@@ -25,7 +25,8 @@ std::string load_file(const TableReader& table, const std::string& scene_file) {
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found)
     table.fail("file", "no such file: " + quoted(name) + "; it is looked for relative to the scene file's folder");
-  if (status.type() == fs::file_type::none) table.fail("file", quoted(name) + " cannot be read: " + error.message());
+  if (status.type() == fs::file_type::none)
+    table.fail("file", quoted(name) + " cannot be read: " + error.message() + "; check its permissions, and the disk");
   if (status.type() == fs::file_type::directory)
     table.fail("file", "expected a point cloud or mesh, found the folder " + quoted(name));
   if (status.type() != fs::file_type::regular)

@@ -16,6 +16,10 @@ namespace fs = std::filesystem;
   throw Error(ErrorKind::input, where + ": " + what);
 }
 
+[[noreturn]] void refuse_unread(const std::string& path, const std::string& why) {
+  refuse(path, "cannot be read: " + why + "; check the file's permissions, and the disk");
+}
+
 /// Walks TOML text byte by byte, knowing only strings, comments and brackets.
 class NestingScan {
 public:
@@ -126,19 +130,19 @@ std::string read_scene_text(const std::string& path) {
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found)
     refuse(path, "no such file, expected a scene file; check the path, it is relative to the working directory");
-  if (status.type() == fs::file_type::none) refuse(path, "cannot be read: " + error.message());
+  if (status.type() == fs::file_type::none) refuse_unread(path, error.message());
   if (status.type() == fs::file_type::directory) refuse(path, "is a folder, expected a scene file (TOML)");
   if (status.type() != fs::file_type::regular)
     refuse(path, "is a pipe, socket or device, expected a regular scene file; save the scene to a file first");
   const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) refuse(path, "cannot be read: " + error.message());
+  if (error) refuse_unread(path, error.message());
   if (bytes > limits::scene_bytes)
     refuse(path, "has " + std::to_string(bytes) + " bytes, expected a scene file of at most " +
                      std::to_string(limits::scene_bytes) + "; points belong into a PLY file that a [[cloud]] names");
   std::ifstream in(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(bytes), '\0');
   in.read(text.data(), static_cast<std::streamsize>(bytes));
-  if (in.bad() || !in.is_open()) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
+  if (in.bad() || !in.is_open()) refuse_unread(path, std::strerror(errno));
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.empty()) refuse(path, "is empty, expected a scene file, which begins with: version = 1");
   return text;

@@ -145,16 +145,16 @@ VariantChoice choose_variant(const TraversalSettings& traversal, const OctreeSet
   for (const TraversalForm form : traversal_forms())
     layers.push_back({plain_variant(form), std::string("plain ") + name_of(form) + " form"});
   const bool scene_speaks = says_something(traversal, octree);
-  std::string reason;
+  std::string reasons; // of one form what the device lacks, of another what the form cannot do
   for (const VariantChoice& layer : layers) {
     if (traversal.form && *traversal.form != layer.variant.form) continue;
     const TraversalVariant variant = merged(traversal, octree, layer.variant);
     const std::string why = why_not(variant, device);
     if (why.empty()) return {variant, scene_speaks ? "the scene and " + layer.source : layer.source};
-    reason = why;
+    if (reasons.find(why) == std::string::npos) reasons += (reasons.empty() ? "" : ", ") + why;
   }
   throw Error(scene_speaks ? ErrorKind::usage : ErrorKind::device,
-              "the settings of [octree] and [traversal] do not go together on " + device.name + ": " + reason +
+              "the settings of [octree] and [traversal] do not go together on " + device.name + ": " + reasons +
                   "; change one of them, or leave them out");
 }
 
