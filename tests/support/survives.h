@@ -1,9 +1,8 @@
 #pragma once
 /// What every reader owes to every file: a cloud that the file can account for, or an input error that says where.
 #include "host/cloud/readers/readers.h"
-#include "host/error.h"
+#include "tests/support/promises.h"
 #include "tests/support/temporary_folder.h"
-#include <algorithm>
 #include <catch2/catch.hpp>
 
 namespace pointgi::test {
@@ -15,38 +14,10 @@ inline bool survives(PointCloud (*read)(const std::string&, const ReadRequest&, 
   CloudReport report;
   try {
     const PointCloud cloud = read(path, {0.0, {}, true}, report);
-    // Memory is asked for by counts that were checked.
-    REQUIRE(static_cast<double>(cloud.position.capacity()) * bytes_each <= static_cast<double>(file_size + 1));
-    for (const std::size_t length :
-         {cloud.normal.size(), cloud.colour.size(), cloud.radius.size(), cloud.opacity.size(), cloud.station.size()})
-      REQUIRE((length == 0 || length == cloud.size()));
-    for (const Field& field : cloud.fields)
-      REQUIRE(field.values.size() == cloud.size());
-    for (const std::uint16_t station : cloud.station)
-      REQUIRE(station < cloud.stations.size());
-    for (const auto& corners : cloud.triangle)
-      for (const std::uint32_t corner : corners)
-        REQUIRE(corner < cloud.size());
-    for (const Eigen::Vector3d& station : cloud.stations)
-      REQUIRE(station.allFinite());
-    for (const Eigen::Vector3f& colour : cloud.colour) // what is not finite is dropped later
-      REQUIRE((!colour.allFinite() || (colour.minCoeff() >= 0.0f && colour.maxCoeff() <= 1.0f)));
-    REQUIRE(cloud.size() > 0);
-    REQUIRE(report.points_in_file == cloud.size());
-    // As errors are, what is told is fit for a terminal.
-    for (const std::vector<std::string>& texts : {report.warnings, report.notes})
-      for (const std::string& text : texts)
-        REQUIRE(std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7f; }));
+    REQUIRE(broken_promise(cloud, report, file_size, bytes_each) == "");
     return true;
   } catch (const Error& error) {
-    const std::string text = error.what();
-    INFO(text);
-    REQUIRE(error.kind() == ErrorKind::input);
-    REQUIRE(text.find(path) == 0);
-    REQUIRE((text.find(": line ") != std::string::npos || text.find(": byte ") != std::string::npos));
-    // Fit for a terminal: nothing of the file's bytes as they are.
-    REQUIRE(std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7f; }));
-    REQUIRE(text.size() < 1000);
+    REQUIRE(broken_promise_of_cloud(error, path) == "");
     return false;
   }
 }
