@@ -120,21 +120,25 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 }
 
 void AtomicFile::commit() {
-  if (committed_) throw Error(ErrorKind::internal, final_path_ + ": committed twice");
   // Data must be on the disk before the name points at them, else a power cut leaves an empty file.
-  if (::fsync(fd_) != 0) throw output_error(final_path_, "write the file to the disk", errno);
-  const int closing = fd_;
-  fd_ = -1;
-  if (::close(closing) != 0) throw output_error(final_path_, "close the file", errno);
-  if (::rename(temporary_path_.c_str(), target_path_.c_str()) != 0)
-    throw output_error(final_path_, "rename the finished file", errno);
-  committed_ = true;
+  if (!committed_ && ::fsync(fd_) != 0) throw output_error(final_path_, "write the file to the disk", errno);
+  commit_unsynced();
   // The rename itself becomes durable with the folder. Some file systems refuse this; the file is whole either way.
   const int folder = ::open(folder_of(target_path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0) {
     (void)::fsync(folder);
     ::close(folder);
   }
+}
+
+void AtomicFile::commit_unsynced() {
+  if (committed_) throw Error(ErrorKind::internal, final_path_ + ": committed twice");
+  const int closing = fd_;
+  fd_ = -1;
+  if (::close(closing) != 0) throw output_error(final_path_, "close the file", errno);
+  if (::rename(temporary_path_.c_str(), target_path_.c_str()) != 0)
+    throw output_error(final_path_, "rename the finished file", errno);
+  committed_ = true;
 }
 
 void remove_unfinished(const std::string& final_path) {

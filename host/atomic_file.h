@@ -36,6 +36,10 @@ public:
   /// handles must have been flushed. Throws Error(output); the destructor then removes the temporary file.
   void commit();
 
+  /// The same without fsync, for what can be made again: whole whatever becomes of the process, but a power cut may
+  /// leave an empty or a torn file, which the reader has to tell.
+  void commit_unsynced();
+
 private:
   std::string final_path_;
   std::string target_path_; ///< final_path_ with symbolic links followed: what is renamed over

@@ -117,7 +117,7 @@ void Checkpoint::write_locked(const std::string& name, const std::string& bytes)
     file.write(&header, sizeof header);
     file.write(options_.key.data(), options_.key.size());
     file.write(bytes.data(), bytes.size());
-    file.commit();
+    file.commit_unsynced(); // the hash tells what a power cut has left of it
   } catch (const Error& error) {
     failed_ = true;
     warn(std::string(error.what()) + ". The run goes on without keeping what it has done: it could not be resumed");

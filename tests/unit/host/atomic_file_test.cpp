@@ -51,6 +51,20 @@ TEST_CASE("atomic file: nothing is seen before commit and all of it afterwards")
   CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("atomic file: what is committed without waiting for the disk replaces the old file all the same") {
+  const TemporaryFolder folder;
+  const std::string target = folder.write("x.kept", "old");
+  {
+    AtomicFile file(target);
+    file.write("new", 3);
+    CHECK(contents(target) == "old");
+    file.commit_unsynced();
+    CHECK_THROWS_WITH(file.commit_unsynced(), Contains("committed twice"));
+  }
+  CHECK(contents(target) == "new");
+  CHECK(folder.entries() == 1);
+}
+
 TEST_CASE("atomic file: what killed runs have left of it is removed, and nothing else") {
   const TemporaryFolder folder;
   const std::string target = folder.file("x.exr");
