@@ -17,7 +17,7 @@ json json_of(const Difference& d) {
 }
 
 void print_json(const CompareOptions& options, const PictureDifference& d) {
-  json out;
+  json out = json::object();
   out["a"] = options.first;
   out["b"] = options.second;
   out["area"] = {d.area.x0, d.area.x1, d.area.y0, d.area.y1};

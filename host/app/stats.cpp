@@ -54,8 +54,11 @@ void add_radiosity(const IndirectLight& light, const RadiositySettings& settings
                       {"residual", light.solution.residual},
                       {"rays", light.rays},
                       {"converged", light.solution.end == SolveEnd::converged}};
-  for (const MethodStatistic& statistic : light.statistics)
-    out[statistic.section][statistic.name] = statistic.value;
+  for (const MethodStatistic& statistic : light.statistics) {
+    nlohmann::json& section = out[statistic.section];
+    if (section.is_null()) section = nlohmann::json::object();
+    section[statistic.name] = statistic.value;
+  }
 }
 
 void add_render(const Stats& stats, nlohmann::json& out) {
@@ -75,7 +78,8 @@ void add_render(const Stats& stats, nlohmann::json& out) {
 void write_stats(const std::string& path, const Stats& stats, const StageLog& stages) {
   using nlohmann::json;
   const DeviceInfo& info = stats.session->info();
-  json out;
+  // No null becomes an object by itself: where memory ends there, the library crashes.
+  json out = json::object();
   out["version"] = POINTGI_VERSION;
   out["command"] = stats.command;
   out["device"] = {{"name", info.name}, {"vendor", info.vendor}, {"driver", info.driver}, {"opencl", info.opencl}};

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <sstream>
 #include <vector>
 
 namespace pointgi {
@@ -19,9 +18,7 @@ std::string read_kernel_file(const std::string& name, const std::string& include
     if (!file)
       throw Error(ErrorKind::usage, "POINTGI_KERNEL_DIR=" + std::string(folder) + ": no file " + name + included_by +
                                         "; point it at a folder like the project's kernels/, or unset it");
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
+    return {std::istreambuf_iterator<char>(file), {}};
   }
   for (const EmbeddedFile& file : embedded_kernels())
     if (file.name == name) return file.text;
@@ -79,10 +76,13 @@ public:
                                              "before both");
       return;
     }
-    std::istringstream lines(read_kernel_file(name, included_by));
+    const std::string text = read_kernel_file(name, included_by);
     out += "#line 1 \"kernels/" + name + "\"\n";
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
+    // No std::getline: where memory ends it ends the file, as at its last line, and what is left of it may compile.
+    for (std::size_t begin = 0, number = 1; begin < text.size(); ++number) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      const std::string line = text.substr(begin, end - begin);
+      begin = end + 1;
       conditionals_.read(line);
       const std::string included = included_name(line);
       if (included.empty()) {

@@ -67,6 +67,7 @@ std::string tuned_text(const TunedFile& tuned) {
   const OctreeSettings& o = tuned.octree;
   const TraversalSettings& t = tuned.traversal;
   std::ostringstream out;
+  out.exceptions(std::ios::badbit); // where memory ends: half of the text would be written
   char rays[32];
   std::snprintf(rays, sizeof rays, "%.4e", tuned.rays_per_second);
   out << "# The fastest variant that `pointgi profile` measured on this device; `pointgi render` takes it from here.\n"

@@ -91,6 +91,7 @@ StoredWinner stored_winner(const DeviceInfo& device) {
   const auto ignored = [&](const std::string& why) {
     return StoredWinner{std::nullopt, why + "; it is not used: run `pointgi profile` again, or delete the file"};
   };
+  if (!text) return ignored(path + ": is empty, or cannot be read"); // half of it may be good TOML
   try {
     const TunedFile tuned = parse_tuned(text.str(), path);
     if (tuned.device != device_text(device) || tuned.driver != driver_text(device))

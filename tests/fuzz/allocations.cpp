@@ -6,10 +6,21 @@
 
 namespace {
 
-std::atomic<std::size_t> taken{0}, peak{0};
+std::atomic<std::size_t> taken{0}, peak{0}, until_refused{0};
+
+/// Whether this allocation is the one that is refused.
+bool is_refused() {
+  std::size_t left = until_refused;
+  while (left > 0 && !until_refused.compare_exchange_weak(left, left - 1)) {
+  }
+  return left == 1;
+}
 
 void* note(void* block) {
-  if (block == nullptr) throw std::bad_alloc();
+  if (block == nullptr || is_refused()) {
+    std::free(block);
+    throw std::bad_alloc();
+  }
   const std::size_t now = taken += malloc_usable_size(block);
   std::size_t before = peak;
   while (now > before && !peak.compare_exchange_weak(before, now)) {
@@ -60,6 +71,9 @@ std::size_t allocated_bytes() {
 }
 std::size_t peak_bytes() {
   return peak;
+}
+void refuse_allocation(std::size_t number) {
+  until_refused = number;
 }
 void reset_peak() {
   peak = taken.load();

@@ -154,7 +154,10 @@ void report() {
 }
 
 struct WholeRun {
-  WholeRun() { dl_iterate_phdr(add_module, nullptr); }
+  WholeRun() {
+    dl_iterate_phdr(add_module, nullptr);
+    unsetenv("LD_PRELOAD"); // drivers start linkers
+  }
   ~WholeRun() { report(); }
 } whole_run;
 

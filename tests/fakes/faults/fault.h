@@ -3,9 +3,8 @@
 /// full memory would: the program is the one that is shipped, and knows nothing of it. What the environment says:
 ///   FAULT_CALL=NAME    the call that fails: an OpenCL function, a system call, or "allocation"
 ///   FAULT_AT=N         its N-th call, from 1; of "allocation" the place in the program, as FAULT_REPORT names it
-///   FAULT_CODE=CODE    what it answers: an OpenCL code or an errno; 0 of calls that move bytes: half of them are
-///   moved;
-///                      -9 of system calls: the program is killed there
+///   FAULT_CODE=CODE    what it answers: an OpenCL code or an errno; 0: of calls that move bytes half are moved;
+///                      -9: the program is killed in the system call
 ///   FAULT_LASTS=1      from then on all OpenCL calls answer so, but those that release: the device is lost; of
 ///                      "allocation" and system calls: all of that name fail from then on
 ///   FAULT_REPORT=FILE  written at the end: "count NAME N", "place HASH ADDRESS…", "live NAME N",

@@ -30,7 +30,7 @@ const char* scene_text() {
 
 constexpr const char* outputs[] = {"a.exr", "a.png", "stats.json", "trace.json"};
 constexpr char old_bytes[] = "what was there before";
-constexpr int seconds_of_a_hang = 60;
+constexpr int seconds_of_a_hang = 60, seconds_to_compile = 600;
 
 CallReport read_report(const std::string& path) {
   CallReport report;
@@ -104,6 +104,7 @@ FaultScene::Way cached_programs_way() {
 FaultScene::FaultScene(const Way& way) : way_(way) {
   folder_.write("scene.toml", scene_text());
   CallReport ignored;
+  limit_seconds_ = seconds_to_compile;
   for (const bool counts : {false, true}) {
     const Run made = run("", "", 0, counts ? calls_ : ignored);
     if (made.code != 0 || !(counts ? calls_ : ignored).is_there)
@@ -113,6 +114,7 @@ FaultScene::FaultScene(const Way& way) : way_(way) {
   png_ = contents(output("a.png"));
   for (const auto& entry : fs::recursive_directory_iterator(folder_of(0) + "/cache"))
     if (entry.path().extension() == ".vmap") vmap_ = contents(entry.path().string());
+  limit_seconds_ = seconds_of_a_hang;
 }
 
 std::string FaultScene::folder_of(int slot) const {
@@ -139,7 +141,7 @@ Run FaultScene::run(const std::string& variables, const std::string& options, in
   const Run run =
       run_program("render " + folder_.file("scene.toml") + " --quiet " + way_.options + " -o " + out +
                       "a.exr --stats " + out + "stats.json --trace " + out + "trace.json " + options,
-                  "timeout -s KILL " + std::to_string(seconds_of_a_hang) +
+                  "timeout -s KILL " + std::to_string(limit_seconds_) +
                       " env LD_PRELOAD=" POINTGI_FAULTS_LIBRARY " POINTGI_DEVICE=cpu POINTGI_CACHE_DIR=" + folder +
                       "/cache FAULT_REPORT=" + told + " " + way_.variables + variables);
   report = read_report(told);

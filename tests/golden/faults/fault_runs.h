@@ -81,6 +81,7 @@ private:
   CallReport calls_;
   std::map<std::string, std::vector<float>> channels_; ///< of the undisturbed picture
   std::string png_, vmap_;
+  int limit_seconds_ = 0; ///< of a run
 };
 
 /// The ways that together call all that is called: links and a V-map; directions; images; the cache of programs.
