@@ -207,8 +207,8 @@ TEST_CASE("an error over an EXR picture shows the name of a channel in printable
   // The first channel: its name, type, how it is kept, and samples in x.
   const std::size_t name = bytes.find(std::string("channels\0chlist\0", 16)) + 16 + 4;
   bytes[name] = '\x1b';
-  for (const char samples :
-       {'\2', '\7'}) { // 300 pixels are a multiple of 2 and none of 7, which OpenEXR refuses itself
+  // 300 pixels are a multiple of 2 and none of 7, which OpenEXR refuses itself.
+  for (const char samples : {'\2', '\7'}) {
     bytes[name + 2 + 4 + 4] = samples;
     put_bytes(folder.file("damaged.exr"), bytes);
     try {
