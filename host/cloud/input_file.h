@@ -1,6 +1,7 @@
 #pragma once
 /// Getting hold of a user's input file without being blocked, surprised or drowned by it.
 #include "host/error.h"
+#include "host/printable.h"
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -46,12 +47,5 @@ FileBytes read_whole_file(const std::string& path);
 
 /// Whether a file's name ends in `extension` (lower case, with its dot), in whatever case.
 bool has_extension(const std::string& path, std::string_view extension);
-
-/// Text from a file as an error message may show it: in quotes, other than printable ASCII as \xNN, cut after
-/// `max_bytes` bytes of the text. Terminals obey escape sequences, so that nothing of a file goes there as it is.
-std::string quoted_bytes(std::string_view text, std::size_t max_bytes = 40);
-
-/// As quoted_bytes(), without the quotes.
-std::string printable(std::string_view text, std::size_t max_bytes = 40);
 
 } // namespace pointgi

@@ -1,5 +1,6 @@
 #include "host/error.h"
 #include "host/image/picture_writer.h"
+#include "host/printable.h"
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -65,8 +66,8 @@ Picture read(const std::string& path) {
     ++channel_count;
     if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
       refuse(path,
-             std::string("channel \"") + c.name() +
-                 "\" has fewer samples than pixels (luminance and chroma), expected one a pixel; convert it to RGB");
+             "channel " + quoted_bytes(c.name()) +
+                 " has fewer samples than pixels (luminance and chroma), expected one a pixel; convert it to RGB");
   }
   // OpenEXR keeps windows within half the range of int, so these differences cannot overflow.
   const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
@@ -124,7 +125,7 @@ Picture read_exr(const std::string& path) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    refuse(path, std::string("cannot be read as an EXR picture: ") + error.what() + "; render or copy it again");
+    refuse(path, "cannot be read as an EXR picture: " + printable(error.what(), 300) + "; render or copy it again");
   }
 }
 

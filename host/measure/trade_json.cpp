@@ -1,6 +1,7 @@
 #include "host/error.h"
 #include "host/json_number.h"
 #include "host/measure/trade.h"
+#include "host/printable.h"
 #include <fstream>
 #include <limits>
 
@@ -106,14 +107,16 @@ public:
     require(value_.is_object(), "an object");
     std::map<std::string, double> all;
     for (const auto& [key, value] : value_.items())
-      all[key] = Reader(value, place_ + "." + key).number();
+      all[key] = Reader(value, place_ + "." + printable(key)).number();
     return all;
   }
 
 private:
   void require(bool right, const char* expected) const {
-    if (!right)
-      throw Error(ErrorKind::input, place_ + ": expected " + expected + ", found " + value_.dump().substr(0, 40));
+    if (right) return;
+    constexpr bool ascii = true; // fit for a terminal
+    throw Error(ErrorKind::input,
+                place_ + ": expected " + expected + ", found " + value_.dump(-1, ' ', ascii).substr(0, 40));
   }
 
   const json& value_;
@@ -205,7 +208,15 @@ std::string json_of(const Trade& trade) {
 Trade read_trade(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(ErrorKind::input, path + ": cannot be read; is it there?");
-  const json document = json::parse(file, nullptr, false);
+  // json_of() has seven levels, and the library takes one call within another for each when a value is shown.
+  constexpr int most_levels = 32;
+  const auto refuse_depth = [&](int levels, json::parse_event_t, const json&) {
+    if (levels > most_levels)
+      throw Error(ErrorKind::input, path + ": is no measurement: its lists and objects lie more than " +
+                                        std::to_string(most_levels) + " deep in each other; remove it to measure anew");
+    return true;
+  };
+  const json document = json::parse(file, refuse_depth, false);
   if (document.is_discarded())
     throw Error(ErrorKind::input, path + ": is no JSON, or was cut off; remove it to measure anew");
   return trade_of(Reader(document, path + ": "));

@@ -24,7 +24,8 @@ toml::table parse(const std::string& text, const std::string& name) {
     // Without a source path: nodes that carry one came from --set (toml_words.h).
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(ErrorKind::input, place_of(error.source(), name).text() + ": not valid TOML: " + complaint(error));
+    throw Error(ErrorKind::input,
+                harmless(place_of(error.source(), name).text() + ": not valid TOML: " + complaint(error)));
   }
 }
 

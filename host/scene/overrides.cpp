@@ -15,7 +15,8 @@ struct Override {
 };
 
 [[noreturn]] void refuse(const Override& set, const std::string& what) {
-  throw Error(ErrorKind::usage, set.origin + ": " + what);
+  // Names may be from the scene file; what was typed is told as it was.
+  throw Error(ErrorKind::usage, set.origin + ": " + harmless(what));
 }
 
 std::string joined(const std::vector<std::string>& path, std::size_t count) {

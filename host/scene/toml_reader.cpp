@@ -64,11 +64,11 @@ std::vector<std::string> TableReader::keys() const {
 }
 
 void TableReader::fail(const char* key, const std::string& what) const {
-  throw Error(ErrorKind::input, place(key).text() + ": " + path_to(key) + ": " + what);
+  throw Error(ErrorKind::input, harmless(place(key).text() + ": " + path_to(key) + ": " + what));
 }
 
 void TableReader::fail(const std::string& what) const {
-  throw Error(ErrorKind::input, place().text() + ": " + (path_.empty() ? "" : path_ + ": ") + what);
+  throw Error(ErrorKind::input, harmless(place().text() + ": " + (path_.empty() ? "" : path_ + ": ") + what));
 }
 
 void TableReader::unexpected(const char* key, const std::string& expected) const {
@@ -80,7 +80,8 @@ void TableReader::missing(const char* key, const std::string& expected) const {
 }
 
 void TableReader::refuse_key(const toml::key& key, const std::string& what) const {
-  throw Error(ErrorKind::input, place_of(key.source(), *file_).text() + ": " + path_to(key.str()) + ": " + what);
+  throw Error(ErrorKind::input,
+              harmless(place_of(key.source(), *file_).text() + ": " + path_to(key.str()) + ": " + what));
 }
 
 void TableReader::allow_only(const std::vector<std::string>& keys) const {

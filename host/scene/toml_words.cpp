@@ -1,5 +1,6 @@
 #include "host/scene/toml_words.h"
 #include "host/scene/nearest.h"
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -47,22 +48,26 @@ std::string found_text(const toml::node& node) {
   return "a date or time";
 }
 
-std::string quoted(const std::string& text) {
-  std::string shown = "\"";
-  std::size_t i = 0;
-  for (; i < text.size() && i < shown_bytes; ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
+std::string harmless(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
     if (byte < 0x20 || byte == 0x7f) {
       constexpr char hex[] = "0123456789abcdef";
       shown += std::string("\\x") + hex[byte >> 4] + hex[byte & 15];
     } else {
-      shown += text[i];
+      shown += c;
     }
   }
+  return shown;
+}
+
+std::string quoted(const std::string& text) {
+  std::size_t end = std::min(text.size(), shown_bytes);
   // The cut must not leave half a UTF-8 character: take the rest of its continuation bytes too.
-  for (; i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80; ++i)
-    shown += text[i];
-  return shown + (i < text.size() ? "...\"" : "\"");
+  while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+    ++end;
+  return "\"" + harmless(text.substr(0, end)) + (end < text.size() ? "...\"" : "\"");
 }
 
 std::string any_of(const std::vector<std::string>& words) {

@@ -14,6 +14,9 @@ SourcePlace place_of(const toml::source_region& source, const std::string& file)
 /// A value as a user would write it, shortened: `"many"`, `12`, `[0.5, 1.2, 0.5]`, `a table`.
 std::string found_text(const toml::node& node);
 
+/// The text with control characters as \xNN: it has words from a file, and terminals obey them.
+std::string harmless(const std::string& text);
+
 /// `"text"`, with control characters escaped and no more than 60 bytes of it.
 std::string quoted(const std::string& text);
 

@@ -13,8 +13,8 @@ toml::table parsed(const std::string& text, const std::string& file) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw Error(ErrorKind::input,
-                place_of(error.source(), file).text() + ": not valid TOML: " + std::string(error.description()));
+    throw Error(ErrorKind::input, harmless(place_of(error.source(), file).text() +
+                                           ": not valid TOML: " + std::string(error.description())));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "host/cloud/readers/mesh.h"
 #include "host/cloud/input_file.h"
 #include "host/cloud/precision.h"
+#include "host/cloud/readers/mesh_checks.h"
 #include "host/cloud/readers/mesh_sample.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -120,8 +121,14 @@ Soup triangles_of(const aiScene& scene) {
 
 Soup load(const std::string& path, CloudReport& report) {
   require_regular_file(path);
+  check_mesh_file(path);
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (scene != nullptr) {
+    for (unsigned m = 0; m < scene->mNumMeshes; ++m)
+      prepare_to_cut(*scene->mMeshes[m], path);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error(ErrorKind::input, path + ": cannot be read as a mesh: " + printable(importer.GetErrorString(), 200) +
                                       "; expected a PLY cloud or a mesh such as OBJ, STL, OFF or glTF");

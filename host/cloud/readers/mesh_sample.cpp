@@ -61,8 +61,11 @@ public:
 
   /// Adds the point unless another on the same side of the sheet is closer than allowed.
   bool try_add(const Vector3d& p, const Vector3d& facing) {
+    // Parts may lie farther from each other than numbers of cells go; there, far beyond what doubles tell apart, all
+    // cells are one.
+    constexpr double most = 4e18;
     const Eigen::Matrix<std::int64_t, 3, 1> cell =
-        ((p - origin_) / closest_).array().floor().matrix().cast<std::int64_t>();
+        ((p - origin_) / closest_).array().floor().min(most).matrix().cast<std::int64_t>();
     for (std::int64_t n = 0; n < 27; ++n) {
       // From the point's own cell outwards: nearly all candidates are refused, and most of them there.
       const std::int64_t k = (n + 13) % 27;

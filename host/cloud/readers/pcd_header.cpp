@@ -54,7 +54,7 @@ private:
     if (!lines_.next())
       fail(lines_.line() + 1, "the file ends within its header, expected a line DATA; the file is truncated or no PCD");
     Words words = words_of(lines_.text());
-    if (words.empty() || words[0][0] == '#') return false;
+    if (words.empty() || words[0].substr(0, 1) == "#") return false; // quotes may hold no word
     const std::string key = upper(words[0]);
     words.erase(words.begin());
     if (key == "FIELDS" || key == "COLUMNS")

@@ -1,5 +1,6 @@
-/// A scene file: a scene, or an error that says where. A line that begins with "#set " is an override as --set takes
-/// it. Clouds may lie in cloud.ply and environment maps in sky.hdr beside the scene.
+/// A scene file: a scene, or an error that says where. A printable line that begins with "#set " is an override as
+/// --set takes it; who types other characters sees them in the error. Clouds may lie in cloud.ply and environment maps
+/// in sky.hdr beside the scene.
 #include "host/scene/load_scene.h"
 #include "tests/fuzz/targets/target.h"
 #include "tests/support/hdr_bytes.h"
@@ -15,7 +16,8 @@ std::vector<std::string> overrides_in(std::string_view text) {
   std::vector<std::string> overrides;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    if (text.substr(0, mark.size()) == mark) overrides.emplace_back(text.substr(mark.size(), end - mark.size()));
+    const std::string line(text.substr(0, end));
+    if (line.rfind(mark, 0) == 0 && is_printable(line)) overrides.push_back(line.substr(mark.size()));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return overrides;

@@ -2,6 +2,7 @@
 #include "host/error.h"
 #include "host/image/picture_writer.h"
 #include "host/image/png_writer.h"
+#include "tests/support/promises.h"
 #include "tests/unit/host/image/picture_fixture.h"
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -197,4 +198,25 @@ TEST_CASE("what is no EXR picture is refused as input", "[picture]") {
   huge.replace(window + 8, 8, extent);
   put_bytes(damaged, huge);
   check_refused(damaged);
+}
+
+TEST_CASE("an error over an EXR picture shows the name of a channel in printable characters", "[picture]") {
+  const Folder folder;
+  REQUIRE_FALSE(error_of_writing(folder.file("good.exr"), 40));
+  std::string bytes = bytes_of(folder.file("good.exr"));
+  // The first channel: its name, type, how it is kept, and samples in x.
+  const std::size_t name = bytes.find(std::string("channels\0chlist\0", 16)) + 16 + 4;
+  bytes[name] = '\x1b';
+  // 300 pixels are a multiple of 2 and none of 7, which OpenEXR refuses itself.
+  for (const char samples : {'\2', '\7'}) {
+    bytes[name + 2 + 4 + 4] = samples;
+    put_bytes(folder.file("damaged.exr"), bytes);
+    try {
+      read_exr(folder.file("damaged.exr"));
+      FAIL("accepted");
+    } catch (const Error& error) {
+      CHECK(test::broken_promise(error, folder.file("damaged.exr")) == "");
+      CHECK_THAT(error.what(), Catch::Contains("\\x1b"));
+    }
+  }
 }

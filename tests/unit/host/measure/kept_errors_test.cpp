@@ -100,4 +100,13 @@ TEST_CASE("of errors that are kept those count that the measurement's runs have"
       CHECK(kept_errors(path, trade_of("own", 1)).empty());
     }
   }
+  SECTION("the file has lists, objects, texts or bytes that lie in each other without end") {
+    for (const char* level : {"\x81", "\x9f", "\xa1\x61k", "\xbf\x61k", "\x7f", "\x5f", "\xc1"}) {
+      std::string bytes;
+      for (int i = 0; i < 200'000; ++i)
+        bytes += level;
+      folder.write("errors.cbor", bytes);
+      CHECK(kept_errors(path, trade_of("own", 1)).empty());
+    }
+  }
 }

@@ -1,6 +1,7 @@
 /// The front, recommendations, commands, and the files of a measurement.
 #include "host/error.h"
 #include "host/measure/trade.h"
+#include "tests/support/promises.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/trade.h"
 #include <catch2/catch.hpp>
@@ -91,6 +92,24 @@ TEST_CASE("a damaged trade.json is refused by its name and what is wrong") {
   nlohmann::json without = nlohmann::json::parse(text);
   without.erase("device");
   CHECK_THAT(error_of(folder.write("without.json", without.dump())), Contains("has no \"device\""));
+}
+
+TEST_CASE("a trade.json whose lists lie in each other without end is refused, not followed") {
+  const test::TemporaryFolder folder;
+  const std::string deep(200'000, '[');
+  CHECK_THAT(error_of(folder.write("open.json", deep)), Contains("open.json: is no measurement"));
+  CHECK_THAT(error_of(folder.write("closed.json", deep + std::string(deep.size(), ']'))),
+             Contains("more than 32 deep"));
+}
+
+TEST_CASE("what a damaged trade.json holds is told in printable characters") {
+  const test::TemporaryFolder folder;
+  nlohmann::json changed = nlohmann::json::parse(json_of(small_trade()));
+  changed["runs"] = "\x1b[31m\u2028\x7f";
+  CHECK(test::is_printable(error_of(folder.write("value.json", changed.dump()))));
+  changed = nlohmann::json::parse(json_of(small_trade()));
+  changed["runs"][0]["stages"] = {{"\x1b[31m\u2028\x7f", "far"}};
+  CHECK(test::is_printable(error_of(folder.write("key.json", changed.dump()))));
 }
 
 TEST_CASE("trade.csv has a line a run, with as many fields as names") {

@@ -1,5 +1,6 @@
 #include "host/scene/limits.h"
 #include "host/scene/load_scene.h"
+#include "tests/support/promises.h"
 #include "tests/unit/host/scene/scene_files.h"
 #include <catch2/catch.hpp>
 
@@ -417,4 +418,19 @@ TEST_CASE("names of materials are names of the type", "[scene]") {
   CHECK(std::string(name_of(MaterialType::mirror)) == "mirror");
   CHECK(std::string(name_of(MaterialType::glass)) == "glass");
   CHECK(std::string(name_of(MaterialType::phong)) == "phong");
+}
+
+TEST_CASE("errors show the control characters of a scene and of --set, and do not send them to the terminal") {
+  const SceneFolder folder;
+  const std::string names = "version = 1\n[[material]]\nname = \"\\u001b[31m\"\n[[material]]\nname = \"b\"\n";
+  const std::string of_material = folder.error(names + "[[shape]]\ntype = \"sphere\"\nmaterial = \"other\"\n");
+  for (const std::string& error :
+       {folder.error("version = 1\n\"\\u001b[31m\" = 1\n"), folder.error("version = 1\n\x1b[31m = 1\n"),
+        folder.error("version = 1\nup = \"\x7f\"\n"), of_material,
+        folder.error(names, {"material.other.type=mirror"})}) {
+    INFO(error);
+    CHECK_FALSE(error.empty());
+    CHECK(test::is_harmless(error));
+  }
+  CHECK_THAT(folder.error("version = 1\n\"\\u001b[31m\" = 1\n"), Catch::Contains("\\x1b[31m: unknown key"));
 }

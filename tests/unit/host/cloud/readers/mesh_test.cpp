@@ -1,7 +1,11 @@
 #include "host/cloud/readers/mesh.h"
+#include "host/cloud/readers/mesh_checks.h"
 #include "host/cloud/readers/mesh_sample.h"
 #include "host/error.h"
+#include "tests/support/mesh_bytes.h"
 #include "tests/support/temporary_folder.h"
+#include <algorithm>
+#include <assimp/mesh.h>
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -233,4 +237,61 @@ TEST_CASE("mesh: nodes place and mirror their meshes without turning them inside
     CHECK(cloud.position[i].z() == 5.0);
     CHECK(cloud.position[i].x() <= 0.0);
   }
+}
+
+TEST_CASE("mesh: faces that a damaged file gets wrong do not end the program") {
+  const TemporaryFolder folder;
+  CloudReport report;
+  const auto refused = [&](const std::string& name, const std::string& bytes, const std::string& why) {
+    CHECK_THROWS_WITH(sample_mesh(folder.write(name, bytes), 0.1, report), Contains(name) && Contains(why));
+  };
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  CHECK(
+      sample_mesh(folder.write("sound.off", "OFF # a\n#b\n4 2 6\n# c\n" + vertices + "\n3 0 2 1\n4 0 1 2 3 255 0 0\n"),
+                  0.1, report)
+          .size() > 0);
+  refused("none.off", "OFF\n4 2 6\n" + vertices + "3 0 2 1\n0\n", "face 2 has 0 corners");
+  refused("many.off", "OFF\n4 2 6\n" + vertices + "3 0 2 1\n30 0 0\n", "face 2 has 30 corners");
+  refused("beyond.off", "OFF\n4 2 6\n" + vertices + "3 0 2 1\n3 0 1 4\n", "face 2 names a vertex beyond the 4");
+  refused("cut.off", "OFF\n4 2 6\n" + vertices + "3 0 2 1\n3 0 1", "face 2's vertex, found \"\"");
+  refused("short.off", "OFF\n4 4000000000 6\n" + vertices + "3 0 2 1\n", "1 of 4000000000 faces");
+  refused("nameless.off", "1\n3 0\n4 4 1\n0\n0\n0\n0", "expected OFF");
+}
+
+TEST_CASE("mesh: faces whose corners do not exist are refused before they are cut up, faces without corners are none") {
+  aiMesh mesh;
+  mesh.mNumVertices = 4;
+  mesh.mNumFaces = 2;
+  mesh.mFaces = new aiFace[2];
+  mesh.mFaces[0].mNumIndices = 3;
+  mesh.mFaces[0].mIndices = new unsigned[3]{0, 1, 3};
+  mesh.mPrimitiveTypes = aiPrimitiveType_TRIANGLE | aiPrimitiveType_POLYGON;
+  prepare_to_cut(mesh, "a.obj");
+  CHECK(mesh.mPrimitiveTypes == aiPrimitiveType_TRIANGLE); // Assimp ends the program where no polygon is among polygons
+  mesh.mFaces[0].mIndices[2] = 4;
+  CHECK_THROWS_WITH(prepare_to_cut(mesh, "a.obj"), Contains("a.obj") && Contains("face 1 names vertex 4 of 4"));
+}
+
+TEST_CASE("mesh: a binary glTF whose chunk is longer than the file asks for no memory") {
+  const TemporaryFolder folder;
+  CloudReport report;
+  const std::string glb = test::glb_seed();
+  CHECK(sample_mesh(folder.write("sound.glb", glb), 0.1, report).size() > 0);
+  std::string damaged = glb;
+  damaged.replace(12, 4, "\xf5\xff\xfb\xff");
+  CHECK_THROWS_WITH(sample_mesh(folder.write("damaged.glb", damaged), 0.1, report),
+                    Contains("damaged.glb") && Contains("byte 12 promises a chunk of 4294705141 bytes"));
+}
+
+TEST_CASE("mesh: parts whose distance is no number of spacings that fits into an integer get their points") {
+  MeshTriangle near_one, far_one;
+  near_one.position = {Vector3d(0, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)};
+  far_one.position = {Vector3d(1e30, 0, 0), Vector3d(1e30, 1, 0), Vector3d(1e30, 0, 1)};
+  for (MeshTriangle* triangle : {&near_one, &far_one})
+    triangle->normal.fill(Vector3f::Zero());
+  const PointCloud cloud = sample_triangles({near_one, far_one}, 200.0, false);
+  const auto far_points =
+      std::count_if(cloud.position.begin(), cloud.position.end(), [](const Vector3d& p) { return p.x() > 0.0; });
+  CHECK(far_points > 50);
+  CHECK(static_cast<std::ptrdiff_t>(cloud.size()) - far_points > 50);
 }

@@ -261,3 +261,8 @@ TEST_CASE("pcd read: compressed data that are damaged") {
              Contains("the compressed data"));
   CHECK(read(head + good + std::string(4000, '\0')).report.warnings.empty()); // PCL fills pages
 }
+
+TEST_CASE("a line of a PCD header that begins with empty quotes is refused, not read beyond its end") {
+  CHECK_THAT(complaint("# .PCD v0.7\nVERSION 0.7\n\"\""), Contains("line 3: expected FIELDS"));
+  CHECK_THAT(complaint("# .PCD v0.7\nVERSION 0.7\n\"\" 3\nDATA ascii\n"), Contains("line 3: expected FIELDS"));
+}

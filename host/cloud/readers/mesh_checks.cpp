@@ -1,0 +1,133 @@
+#include "host/cloud/readers/mesh_checks.h"
+#include "host/cloud/input_file.h"
+#include "host/cloud/readers/record_values.h"
+#include <assimp/mesh.h>
+#include <charconv>
+
+namespace pointgi {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+  throw Error(ErrorKind::input, path + ": cannot be read as a mesh: " + what + "; the file is damaged, save it again");
+}
+
+/// Magic, version and length of the file, 4 bytes each, and before each chunk its length and its kind.
+void check_glb(const InputFile& file) {
+  constexpr std::uint64_t header = 12, chunk_header = 8;
+  char magic[4];
+  if (file.size() < header) return;
+  file.read(0, magic, sizeof magic);
+  if (std::string_view(magic, sizeof magic) != "glTF") return;
+  for (std::uint64_t at = header; at + chunk_header <= file.size();) {
+    char bytes[4];
+    file.read(at, bytes, sizeof bytes);
+    const auto length = little_endian<std::uint32_t>(bytes);
+    if (length > file.size() - at - chunk_header)
+      refuse(file.path(), "byte " + std::to_string(at) + " promises a chunk of " + std::to_string(length) +
+                              " bytes, and the file ends before");
+    at += chunk_header + length;
+  }
+}
+
+/// Words of a text, and lines from where the words have come to; comments stand before a word, not between lines.
+class OffText {
+public:
+  OffText(const char* begin, const char* end) : at_(begin), end_(end) {}
+
+  std::string_view word() {
+    skip_comments();
+    const char* begin = at_;
+    while (at_ < end_ && !is_space(*at_))
+      ++at_;
+    return {begin, static_cast<std::size_t>(at_ - begin)};
+  }
+  /// The next that is not blank; false: there is none.
+  bool line(std::string_view& text) {
+    skip_spaces();
+    const char* begin = at_;
+    skip_line();
+    text = {begin, static_cast<std::size_t>(at_ - begin)};
+    return !text.empty();
+  }
+
+  void skip_comments() {
+    for (skip_spaces(); at_ < end_ && *at_ == '#'; skip_spaces())
+      skip_line();
+  }
+
+private:
+  void skip_spaces() {
+    while (at_ < end_ && is_space(*at_))
+      ++at_;
+  }
+  void skip_line() {
+    while (at_ < end_ && *at_ != '\n' && *at_ != '\r')
+      ++at_;
+  }
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+  const char* at_;
+  const char* end_;
+};
+
+std::uint32_t whole(const std::string& path, std::string_view word, const char* what) {
+  std::uint32_t value = 0;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || stop != word.data() + word.size())
+    refuse(path, std::string("expected the number of ") + what + ", found " + quoted_bytes(word));
+  return value;
+}
+
+void check_off(const InputFile& file) {
+  constexpr std::uint32_t most_corners = 9; // of a face, that Assimp reads
+  const std::string& path = file.path();
+  const FileBytes bytes = read_whole_file(path);
+  OffText text(bytes.data.get(), bytes.data.get() + bytes.size);
+  const std::string_view head = text.word();
+  if (head.size() < 3 || head.substr(head.size() - 3) != "OFF")
+    refuse(path, "it begins with " + quoted_bytes(head) + ", expected OFF");
+  if (head.find('n') != std::string_view::npos) whole(path, text.word(), "dimensions");
+  const std::uint32_t vertices = whole(path, text.word(), "vertices");
+  const std::uint32_t faces = whole(path, text.word(), "faces");
+  whole(path, text.word(), "edges");
+  text.skip_comments();
+  std::string_view line;
+  for (std::uint32_t v = 0; v < vertices; ++v)
+    if (!text.line(line)) refuse(path, "it has " + std::to_string(v) + " of " + std::to_string(vertices) + " vertices");
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    if (!text.line(line)) refuse(path, "it has " + std::to_string(f) + " of " + std::to_string(faces) + " faces");
+    const std::string face = "face " + std::to_string(f + 1);
+    OffText words(line.data(), line.data() + line.size());
+    const std::uint32_t corners = whole(path, words.word(), (face + "'s corners").c_str());
+    if (corners < 1 || corners > most_corners)
+      refuse(path,
+             face + " has " + std::to_string(corners) + " corners, expected 1 to " + std::to_string(most_corners));
+    for (std::uint32_t c = 0; c < corners; ++c)
+      if (whole(path, words.word(), (face + "'s vertex").c_str()) >= vertices)
+        refuse(path, face + " names a vertex beyond the " + std::to_string(vertices) + " that there are");
+  }
+}
+
+} // namespace
+
+void check_mesh_file(const std::string& path) {
+  const InputFile file(path);
+  check_glb(file);
+  if (has_extension(path, ".off")) check_off(file);
+}
+
+void prepare_to_cut(aiMesh& mesh, const std::string& path) {
+  bool has_polygon = false;
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    has_polygon = has_polygon || face.mNumIndices > 3;
+    for (unsigned k = 0; k < face.mNumIndices; ++k)
+      if (face.mIndices[k] >= mesh.mNumVertices)
+        refuse(path, "face " + std::to_string(f + 1) + " names vertex " + std::to_string(face.mIndices[k]) + " of " +
+                         std::to_string(mesh.mNumVertices) + ", counted from 0");
+  }
+  if (!has_polygon) mesh.mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
+}
+
+} // namespace pointgi

@@ -1,0 +1,17 @@
+#pragma once
+/// What Assimp believes of a damaged mesh and must not: found by fuzzing (tests/fuzz/targets/mesh.cpp).
+#include <string>
+
+struct aiMesh;
+
+namespace pointgi {
+
+/// Before Assimp reads the file. Throws Error(input) for binary glTF whose chunks are longer than the file, of which it
+/// would take the memory, and for OFF whose counts and lines do not agree.
+void check_mesh_file(const std::string& path);
+
+/// Before Assimp cuts polygons up: that corners exist, and that a mesh of polygons has one of more than three corners;
+/// faces without corners count as polygons. Throws Error(input) for the one and mends the other.
+void prepare_to_cut(aiMesh& mesh, const std::string& path);
+
+} // namespace pointgi
