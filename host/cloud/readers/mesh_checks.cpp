@@ -1,6 +1,7 @@
 #include "host/cloud/readers/mesh_checks.h"
 #include "host/cloud/input_file.h"
 #include "host/cloud/readers/record_values.h"
+#include <algorithm>
 #include <assimp/mesh.h>
 #include <charconv>
 
@@ -83,6 +84,12 @@ void check_off(const InputFile& file) {
   constexpr std::uint32_t most_corners = 9; // of a face, that Assimp reads
   const std::string& path = file.path();
   const FileBytes bytes = read_whole_file(path);
+  // Some of them end lines for Assimp, and would make faces of what are vertices here.
+  const auto is_control = [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
+  };
+  if (std::any_of(bytes.data.get(), bytes.data.get() + bytes.size, is_control))
+    refuse(path, "it has control characters, expected a text");
   OffText text(bytes.data.get(), bytes.data.get() + bytes.size);
   const std::string_view head = text.word();
   if (head.size() < 3 || head.substr(head.size() - 3) != "OFF")

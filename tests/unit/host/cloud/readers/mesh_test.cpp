@@ -255,6 +255,7 @@ TEST_CASE("mesh: faces that a damaged file gets wrong do not end the program") {
   refused("beyond.off", "OFF\n4 2 6\n" + vertices + "3 0 2 1\n3 0 1 4\n", "face 2 names a vertex beyond the 4");
   refused("cut.off", "OFF\n4 2 6\n" + vertices + "3 0 2 1\n3 0 1", "face 2's vertex, found \"\"");
   refused("short.off", "OFF\n4 4000000000 6\n" + vertices + "3 0 2 1\n", "1 of 4000000000 faces");
+  refused("feed.off", "OFF\n4 1 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\f*\f0\n3 0 2 1\n", "control characters");
   refused("nameless.off", "1\n3 0\n4 4 1\n0\n0\n0\n0", "expected OFF");
 }
 
