@@ -63,8 +63,13 @@ std::optional<std::vector<unsigned char>> load_binary(const std::string& key) {
     return std::nullopt;
   std::string found_key(key.size(), '\0');
   if (!file.read(found_key.data(), static_cast<std::streamsize>(key.size())) || found_key != key) return std::nullopt;
-  std::vector<unsigned char> binary((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (binary.empty() || binary.size() != header.binary_size || hash_of(binary) != header.binary_hash)
+  // Before anything is allocated: sizes of a damaged file may be any number.
+  std::error_code failed;
+  const std::uint64_t size = std::filesystem::file_size(path, failed), before = sizeof header + key.size();
+  if (failed || size <= before || header.binary_size != size - before) return std::nullopt;
+  std::vector<unsigned char> binary(static_cast<std::size_t>(header.binary_size));
+  if (!file.read(reinterpret_cast<char*>(binary.data()), static_cast<std::streamsize>(binary.size())) ||
+      hash_of(binary) != header.binary_hash)
     return std::nullopt;
   mark_as_used(path);
   return binary;

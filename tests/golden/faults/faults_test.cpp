@@ -88,6 +88,11 @@ TEST_CASE("faults: programs that the driver does not take from the cache are com
     CAPTURE(judgement.finding);
     CHECK(judgement.outcome == Outcome::right_picture);
   }
+  for (const char* at : {"12", "13"}) { // of the cache
+    const Judgement judgement = scene.judge({"read", at, EIO, false});
+    CAPTURE(at, judgement.finding);
+    CHECK(judgement.outcome == Outcome::right_picture);
+  }
   CHECK(scene.undisturbed().empty());
 }
 
