@@ -117,6 +117,7 @@ void Checkpoint::write_locked(const std::string& name, const std::string& bytes)
     file.write(&header, sizeof header);
     file.write(options_.key.data(), options_.key.size());
     file.write(bytes.data(), bytes.size());
+    kept_ = true;
     file.commit_unsynced(); // the hash tells what a power cut has left of it
   } catch (const Error& error) {
     failed_ = true;
@@ -141,7 +142,7 @@ void Checkpoint::keep_soon(const std::string& name, std::string bytes) {
 
 void Checkpoint::flush() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  flush_locked();
+  if (kept_ || is_worth(seconds_since(kept_at_))) flush_locked();
 }
 
 void Checkpoint::flush_locked() {

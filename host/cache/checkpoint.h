@@ -40,7 +40,7 @@ public:
   /// For pieces that take little each: kept once the last were kept least_seconds ago, or when many bytes wait. Of one
   /// name only the last piece is kept.
   void keep_soon(const std::string& name, std::string bytes);
-  /// Keeps what waits.
+  /// For a run that ends before its time: keeps what waits, unless all that the run has done took too little.
   void flush();
 
   /// The run is done: the folder goes.
@@ -65,6 +65,7 @@ private:
   Clock::time_point kept_at_ = Clock::now();
   std::size_t found_ = 0;
   bool begun_ = false;  ///< the folder holds nothing of other runs
+  bool kept_ = false;   ///< something, in this run
   bool failed_ = false; ///< and is left alone from then on
 };
 

@@ -75,7 +75,7 @@ TEST_CASE("few samples of pixels in which nothing changes do not bias the mean",
   CHECK(std::fabs(off / level) < 1e-3);
 }
 
-TEST_CASE("light that shafts and directions tell is that of the path tracer") {
+TEST_CASE("light that shafts and directions tell is that of the path tracer", "[long]") {
   const std::string sky = GENERATE(environment(0.3), sun);
   const std::string scene = yard(256, sky) + "[radiosity]\nmethod = \"directions\"\ndirections = 256\n";
   const Picture picture = render_text(scene), truth = trace(scene, "", 1024);

@@ -25,7 +25,7 @@ std::string halves(const std::string& right, const std::string& radiosity) {
 
 } // namespace
 
-TEST_CASE("a mirror does not darken the diffuse surface that it continues") {
+TEST_CASE("a mirror does not darken the diffuse surface that it continues", "[long]") {
   const std::string form = GENERATE("wide", "step");
   // Both halves reflect half of the sky, at every sample: what differs from 0.5 is rounding, of the radiosity too,
   // which has nothing to exchange in a plane.

@@ -77,7 +77,7 @@ double power_within(double r, double depth) {
 
 } // namespace
 
-TEST_CASE("a glass ball throws parallel light together where it should") {
+TEST_CASE("a glass ball throws parallel light together where it should", "[long]") {
   // The formula first: foci of rays (truths of a ball of index 1.5).
   const auto crossing = [](double h) { return h / std::sin(2.0 * (std::asin(h) - std::asin(h / 1.5))); };
   CHECK(crossing(1e-4) == Approx(1.5).epsilon(1e-4));
@@ -111,7 +111,7 @@ TEST_CASE("a glass ball throws parallel light together where it should") {
   }
 }
 
-TEST_CASE("light in a mirrored ring draws a nephroid and a cardioid") {
+TEST_CASE("light in a mirrored ring draws a nephroid and a cardioid", "[long]") {
   struct Ring {
     const char* name;
     std::string light;
@@ -140,7 +140,7 @@ TEST_CASE("light in a mirrored ring draws a nephroid and a cardioid") {
     }
 }
 
-TEST_CASE("a floor's irradiance by photons adds up to their power") {
+TEST_CASE("a floor's irradiance by photons adds up to their power", "[long]") {
   // Places beside a caustic reach for its photons: a halo as wide as k of them, so that its share falls with their
   // number. Measured: 5.7 % too much of 60,000 stored photons, 1.4 % of ten times as many.
   double before = 0.14;
@@ -172,7 +172,7 @@ TEST_CASE("a floor's irradiance by photons adds up to their power") {
   CHECK(before < 0.03);
 }
 
-TEST_CASE("caustics of an area light are those that path tracing finds by chance") {
+TEST_CASE("caustics of an area light are those that path tracing finds by chance", "[long]") {
   const std::string scene =
       "version = 1\n[render]\nsize = [32, 24]\nspp = 32\n[camera]\nposition = [0.0, 1.4, 2.6]\n"
       "look_at = [0.0, 0.1, 0.0]\nfov_deg = 40.0\n[radiosity]\nmethod = \"none\"\n[caustics]\nphotons = 200000\n" +
@@ -231,7 +231,7 @@ TEST_CASE("with caustics.feedback diffuse surfaces pass on what mirrors throw on
   CHECK(added == Approx(truth).epsilon(0.06)); // the paths' noise is 2 %, rims of the lamp are 3 % of it
 }
 
-TEST_CASE("with caustics.indirect mirrors throw the light of diffuse surfaces, too") {
+TEST_CASE("with caustics.indirect mirrors throw the light of diffuse surfaces, too", "[long]") {
   const double without = mean(render_text(indirect_scene("16", "photons = 1000000\n")), "Caustic.G");
   const Picture picture = render_text(indirect_scene("16", "photons = 1000000\nindirect = true\n"));
   const double added = mean(picture, "Caustic.G") - without, truth = traced_mean("LD+S+DE", "1024");
@@ -266,7 +266,7 @@ std::string mirror_room(const std::string& spp, const std::string& caustics) {
 
 } // namespace
 
-TEST_CASE("with both, light goes round between surfaces and mirrors until nothing is left out") {
+TEST_CASE("with both, light goes round between surfaces and mirrors until nothing is left out", "[long]") {
   const Picture truth =
       render_text(mirror_room("1024", "photons = 0\n"), [](RenderOptions& options) { options.integrator = "path"; });
   const Picture ours = render_text(mirror_room("64", "photons = 400000\nfeedback = true\nindirect = true\n"));

@@ -82,7 +82,7 @@ TEST_CASE("rough metal in a uniform sky sends back what single scattering leaves
     }
 }
 
-TEST_CASE("smooth metal is a mirror of its reflectance") {
+TEST_CASE("smooth metal is a mirror of its reflectance", "[long]") {
   const auto scene = [](const std::string& type) {
     return head("0.0, 0.6, 3.0", "0.0, 0.2, 0.0", 40.0, 16, "[32, 24]") + environment(0.5) +
            material("white", "diffuse", "albedo = [0.7, 0.6, 0.5]") +
@@ -122,7 +122,7 @@ struct NamedMetal {
 
 } // namespace
 
-TEST_CASE("named metals reflect what their complex indices of refraction say, at every angle") {
+TEST_CASE("named metals reflect what their complex indices of refraction say, at every angle", "[long]") {
   const auto [name, published] =
       GENERATE(NamedMetal{"gold", {1.0, 0.766, 0.336}}, NamedMetal{"copper", {0.955, 0.638, 0.538}},
                NamedMetal{"silver", {0.972, 0.960, 0.915}}, NamedMetal{"aluminium", {0.913, 0.922, 0.924}},
@@ -176,7 +176,7 @@ std::vector<double> means_of_regions(const Picture& picture, const std::string& 
 
 } // namespace
 
-TEST_CASE("a room with rough metal has all the light in it that the path tracer finds") {
+TEST_CASE("a room with rough metal has all the light in it that the path tracer finds", "[long]") {
   // The lamp is just out of the picture, whose noise would be that of its rim.
   const std::string scene =
       head("0.1, 1.0, 3.4", "0.0, 0.75, 0.0", 34.0, 128, "[30, 24]") +

@@ -49,7 +49,7 @@ double mean_of_floor(const Picture& picture, const std::string& channel) {
 
 } // namespace
 
-TEST_CASE("cones: a point light in a closed sphere, L = rho I / (pi R^2 (1 - rho))") {
+TEST_CASE("cones: a point light in a closed sphere, L = rho I / (pi R^2 (1 - rho))", "[long]") {
   for (const bool at_pixels : {false, true})
     for (const double albedo : {0.5, 0.9}) {
       CAPTURE(at_pixels, albedo);
@@ -61,7 +61,7 @@ TEST_CASE("cones: a point light in a closed sphere, L = rho I / (pi R^2 (1 - rho
     }
 }
 
-TEST_CASE("cones: a room with a bright spot under its ceiling is the path tracer's to a tenth") {
+TEST_CASE("cones: a room with a bright spot under its ceiling is the path tracer's to a tenth", "[long]") {
   const std::string scene = room(material("floor", "diffuse", "albedo = [0.2, 0.2, 0.2]"));
   const Picture truth = trace(scene, "", 256);
   for (const bool at_pixels : {false, true}) {
@@ -93,7 +93,8 @@ TEST_CASE("a lobe's cone finds the blurred reflection that the path tracer finds
   CHECK(mean(cones, "Specular.G") == Approx(mean(rays, "Specular.G")).epsilon(0.1));
 }
 
-TEST_CASE("cones at pixels: direct light by radiosity, the same bits again, and points alone in a baked cloud") {
+TEST_CASE("cones at pixels: direct light by radiosity, the same bits again, and points alone in a baked cloud",
+          "[long]") {
   const std::string scene = room(material("floor", "diffuse", "albedo = [0.2, 0.2, 0.2]")) + by_cones(true);
   const auto diffuse = [&](const char* direct_light) {
     const Picture picture = render_text(scene + "direct_light = \"" + direct_light + "\"\n");

@@ -104,7 +104,7 @@ TEST_CASE("a blocker throws a shadow, and its own front is lit") {
   CHECK(largest(picture, "R") == 0.0);
 }
 
-TEST_CASE("the inside of a closed box without light is black, whatever shines outside") {
+TEST_CASE("the inside of a closed box without light is black, whatever shines outside", "[long]") {
   const Picture picture = render_direct(
       "version = 1\n[render]\nsize = [48, 48]\nspp = 32\n"
       "[camera]\nposition = [0.05, 0.9, 0.9]\nlook_at = [-0.1, -0.3, -0.2]\nfov_deg = 100.0\n"
@@ -145,7 +145,7 @@ TEST_CASE("channels: depth, position, normal, albedo and id of a floor, and the 
   CHECK(sky.uints.at("PointId").front() == 0xffffffffu);
 }
 
-TEST_CASE("a sheet stored as two coincident sides is lit on either, and shines from either") {
+TEST_CASE("a sheet stored as two coincident sides is lit on either, and shines from either", "[long]") {
   const std::string sheet = "[[shape]]\ntype = \"quad\"\ncorner = [-2.0, 0.0, -2.0]\nedge_u = [4.0, 0.0, 0.0]\n"
                             "edge_v = [0.0, 0.0, 4.0]\nspacing = 0.05\nmaterial = \"floor\"\n";
   const std::string light = "[[light]]\ntype = \"point\"\nposition = [0.0, 1.0, 0.0]\npower_w = [40.0, 40.0, 40.0]\n";

@@ -58,7 +58,7 @@ TEST_CASE("every method: linear in the light's power, from 1e-20 to 1e20", "[lon
   }
 }
 
-TEST_CASE("a cloud in map coordinates, tiny or vast, is the picture of the cloud of size 1 at the origin") {
+TEST_CASE("a cloud in map coordinates, tiny or vast, is the picture of the cloud of size 1 at the origin", "[long]") {
   const Picture truth = render_ply(sphere_ply(3000, {}));
   CHECK(mean(truth, "A") > 0.1);
   // Eastings and northings of UTM: a million times the size, in the double coordinates of the file.
@@ -66,7 +66,7 @@ TEST_CASE("a cloud in map coordinates, tiny or vast, is the picture of the cloud
     CHECK(mean_difference(render_ply(sphere_ply(3000, {}, place), place), truth) < 1e-4);
 }
 
-TEST_CASE("points closer together than the deepest cell: the octree ends at its limit, one more is refused") {
+TEST_CASE("points closer together than the deepest cell: the octree ends at its limit, one more is refused", "[long]") {
   // A pile within a ten-millionth of the size, which no depth tells apart, behind the middle of the sphere.
   std::vector<std::string> pile;
   for (int i = 0; i < 2000; ++i)
@@ -127,7 +127,7 @@ TEST_CASE("pictures of one row or one column, as long as a picture may be, are t
   }
 }
 
-TEST_CASE("ten runs give the same bits, photons and light between surfaces among them") {
+TEST_CASE("ten runs give the same bits, photons and light between surfaces among them", "[long]") {
   const std::string scene = ball_by_mirror(1.0, 0.0);
   const Picture first = render_text(scene);
   CHECK(mean(first, "Caustic.R") > 0.0);

@@ -70,7 +70,7 @@ TEST_CASE("form, branching, capacity and depth do not change the picture, storag
   }
 }
 
-TEST_CASE("the absolute delta is a variant: small it agrees, large it jumps over surfaces") {
+TEST_CASE("the absolute delta is a variant: small it agrees, large it jumps over surfaces", "[long]") {
   const Picture truth = render_text(ball_scene(1.0));
   const auto with_delta = [](const std::string& delta) {
     return render_text(ball_scene(1.0), [&](RenderOptions& o) {

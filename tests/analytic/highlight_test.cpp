@@ -53,7 +53,7 @@ TEST_CASE("highlights are the same by both integrators, whatever lobe and lamp",
   CHECK(test.p > significance);
 }
 
-TEST_CASE("a lobe that sees a uniform sky reflects what it may, by both integrators") {
+TEST_CASE("a lobe that sees a uniform sky reflects what it may, by both integrators", "[long]") {
   struct Case {
     double exponent, degrees;
   };

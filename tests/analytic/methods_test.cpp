@@ -186,7 +186,7 @@ TEST_CASE("every method: a room with a block, a body and a lamp, point by point 
   }
 }
 
-TEST_CASE("every method: a furnace of the moving-least-squares surface, B = E / (1 - rho)") {
+TEST_CASE("every method: a furnace of the moving-least-squares surface, B = E / (1 - rho)", "[long]") {
   for (const RadiosityMethod* method : radiosity_methods()) {
     const std::string name = method->name;
     for (const char* more :
@@ -215,7 +215,8 @@ TEST_CASE("every method: a furnace of the moving-least-squares surface, B = E / 
   }
 }
 
-TEST_CASE("directions: the noise of a room's radiosity falls faster than n^(-1/2), and two seeds show all of it") {
+TEST_CASE("directions: the noise of a room's radiosity falls faster than n^(-1/2), and two seeds show all of it",
+          "[long]") {
   const LitRoom room(session(), 5000);
   double before = INFINITY;
   for (const int count : {64, 256, 1024}) {

@@ -98,7 +98,7 @@ const std::string as_patches = "[traversal]\nsurface = \"mls\"\n";
 
 }
 
-TEST_CASE("photons find a ball of few patches under its own solid angle") {
+TEST_CASE("photons find a ball of few patches under its own solid angle", "[long]") {
   const TemporaryFolder folder;
   const std::string scene = head("0.0, 2.5, 5.0", "0.0, 0.6, 0.0", 40.0, 1) +
                             "[caustics]\nphotons = 100000\n[radiosity]\nmethod = \"none\"\n[[light]]\n"
@@ -115,7 +115,7 @@ TEST_CASE("photons find a ball of few patches under its own solid angle") {
   CHECK(photons["absorbed"].get<int>() == 0);
 }
 
-TEST_CASE("mirrors and glass of patches vanish in a uniform environment, through either form") {
+TEST_CASE("mirrors and glass of patches vanish in a uniform environment, through either form", "[long]") {
   const bool glass = GENERATE(false, true);
   const std::string type = glass ? "glass" : "mirror", form = glass ? "step" : "wide";
   CAPTURE(type, form);
@@ -131,7 +131,7 @@ TEST_CASE("mirrors and glass of patches vanish in a uniform environment, through
   }
 }
 
-TEST_CASE("a ball of few patches casts a round shadow, has no dark seams, and hides what a ball hides") {
+TEST_CASE("a ball of few patches casts a round shadow, has no dark seams, and hides what a ball hides", "[long]") {
   const std::string form = GENERATE("wide", "step");
   const std::string scene = head("0.0, 4.0, 9.0", "0.0, 0.5, 0.0", 40.0, 1, "[160, 160]\njitter = false") +
                             "[radiosity]\nmethod = \"none\"\n[[light]]\n"

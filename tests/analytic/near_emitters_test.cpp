@@ -76,7 +76,7 @@ TEST_CASE("in a cube whose walls shine no pixel sticks out") {
   CHECK(smallest(picture, "G") > 4.7);
 }
 
-TEST_CASE("a dark room in a bright sky gets the light between its walls that the path tracer finds") {
+TEST_CASE("a dark room in a bright sky gets the light between its walls that the path tracer finds", "[long]") {
   // The room has a hundredth of what lies outside; 0.15 of its light comes by way of the opening's rim.
   const Picture ours = render_text(room_with_opening(0.1));
   const Picture truth = render_text(room_with_opening(0.1), [](RenderOptions& o) {

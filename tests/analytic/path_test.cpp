@@ -69,7 +69,7 @@ void check_same(const Picture& a, const Picture& b) {
 
 } // namespace
 
-TEST_CASE("furnace: a closed sphere that shines everywhere has the radiance E/(1 - rho)") {
+TEST_CASE("furnace: a closed sphere that shines everywhere has the radiance E/(1 - rho)", "[long]") {
   const double albedo = GENERATE(0.5, 0.9), spacing = GENERATE(0.08, 0.04, 0.02);
   CAPTURE(albedo, spacing);
   // 1 %: the noise of 24576 paths is 0.1 %, and at albedo 0.9 a wall that lost 0.1 % a bounce would be 1 % too dark.
@@ -104,7 +104,7 @@ TEST_CASE("classes of paths: each bounce in a closed sphere brings rho times the
   CHECK(mean(trace(scene, "", 1, {"render.max_depth=2"}), "R") == Approx(1.96).epsilon(0.01));
 }
 
-TEST_CASE("direct light alone is the renderer's own picture") {
+TEST_CASE("direct light alone is the renderer's own picture", "[long]") {
   const std::string scene = room();
   const Picture direct = render_text(scene + "[radiosity]\nmethod = \"none\"\n",
                                      [](RenderOptions&o) {
@@ -123,7 +123,7 @@ TEST_CASE("direct light alone is the renderer's own picture") {
   CHECK(mean(all, "R") > 1.1 * mean(direct, "R"));
 }
 
-TEST_CASE("walls of albedo 0 leave what shines, exactly") {
+TEST_CASE("walls of albedo 0 leave what shines, exactly", "[long]") {
   const std::string scene = room(0.0);
   const Picture direct = render_text(scene), all = trace(scene);
   for (const char* colour : {"R", "G", "B"})
@@ -164,7 +164,7 @@ TEST_CASE("a bias of 1 % in one material is found in its own pixels", "[long]") 
   CHECK(wrong.off == Approx(0.01).epsilon(0.4));
 }
 
-TEST_CASE("strata are not tied to each other: the mean of many samples has no error that stays") {
+TEST_CASE("strata are not tied to each other: the mean of many samples has no error that stays", "[long]") {
   // If each cell of a pixel's grid always met the same part of the lamps, two seeds would stay apart by more than their
   // variance tells (3 at this number of samples); untied strata are below 1.
   const std::vector<std::string> many = {"render.spp=4096", "render.size=[16, 12]"};
@@ -192,7 +192,7 @@ TEST_CASE("the variance falls with the number of samples, in one pass and over m
         1e-8 * 600.0 * 600.0); // rounding: (1e-6)² / 4096; sums of squares leave 1e-7 / 64
 }
 
-TEST_CASE("both forms of the octree and other seeds trace the same light") {
+TEST_CASE("both forms of the octree and other seeds trace the same light", "[long]") {
   const std::string scene = room();
   const Picture wide = trace(scene, "", 1, {"traversal.form=wide"}), step = trace(scene, "", 1, step_form);
   check_same(wide, step);

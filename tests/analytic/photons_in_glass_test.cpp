@@ -67,7 +67,7 @@ TEST_CASE("photons of a lamp that stands in glass are as bright as paths find th
   CHECK(c.photons == Approx(c.paths).epsilon(0.05));
 }
 
-TEST_CASE("photons from a lamp in glass to a surface in the same glass keep their power") {
+TEST_CASE("photons from a lamp in glass to a surface in the same glass keep their power", "[long]") {
   const std::string mirror = "[[material]]\nname = \"mirror\"\ntype = \"mirror\"\n" +
                              disc("0.0, 0.25, 0.0", "0.0, -1.0, 0.0", "0.3", "mirror");
   const Compared c = compare(disc("-0.2, 0.0, 0.0", "0.0, 1.0, 0.0", "0.12", "lamp") +
@@ -78,7 +78,7 @@ TEST_CASE("photons from a lamp in glass to a surface in the same glass keep thei
   CHECK(c.photons == Approx(c.paths).epsilon(0.05));
 }
 
-TEST_CASE("a point light in glass sends out its power, whatever the glass") {
+TEST_CASE("a point light in glass sends out its power, whatever the glass", "[long]") {
   // From the middle of the ball all of it leaves, be it thrown back now and then: E = P / (4 pi d^2) at the floor's
   // middle.
   const Picture picture = render_text(
@@ -95,7 +95,7 @@ TEST_CASE("a point light in glass sends out its power, whatever the glass") {
   CHECK(mean(picture, "Caustic.G") == Approx(0.8 / pi * irradiance).epsilon(0.08));
 }
 
-TEST_CASE("the back of glass is no black back to either integrator") {
+TEST_CASE("the back of glass is no black back to either integrator", "[long]") {
   // The camera stands in the ball: every ray meets glass from within, some of them first the disc, from its front.
   const std::string scene =
       "version = 1\n[render]\nsize = [16, 16]\nspp = 4\n[camera]\nposition = [0.0, 0.3, 0.0]\n"

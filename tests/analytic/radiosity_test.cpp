@@ -66,7 +66,7 @@ TEST_CASE("a point light in a closed sphere: L = rho I / (pi R^2 (1 - rho)), nea
   }
 }
 
-TEST_CASE("a room with a block and a lamp: the picture of the path tracer, colours that bleed") {
+TEST_CASE("a room with a block and a lamp: the picture of the path tracer, colours that bleed", "[long]") {
   const Picture fast = render_text(with_radiosity(room_with_block()));
   const Picture truth = render_text(room_with_block(), [](RenderOptions& options) {
     options.integrator = "path";
@@ -114,7 +114,7 @@ TEST_CASE("radiosity.method = direct: no V-map, a ray a pair, the picture of fmm
                       [](const auto& stage) { return stage["name"] == "direct"; }) == 1);
 }
 
-TEST_CASE("direct_light = radiosity: the thesis' picture without shadow rays, near that with them") {
+TEST_CASE("direct_light = radiosity: the thesis' picture without shadow rays, near that with them", "[long]") {
   // A point light too: it enters by shadow rays at the points, in both modes.
   const std::string scene =
       room_with_block() + "[[light]]\ntype = \"point\"\nposition = [0.0, 1.2, 0.8]\npower_w = [9.0, 9.0, 9.0]\n";

@@ -129,7 +129,7 @@ Silhouette silhouette(const std::string& cloud, double far = 20.0) {
 
 } // namespace
 
-TEST_CASE("a scanned box ends at its edges") {
+TEST_CASE("a scanned box ends at its edges", "[long]") {
   const TemporaryFolder folder;
   const double noise = GENERATE(0.0, 0.2);
   const unsigned seed = GENERATE(1u, 2u);

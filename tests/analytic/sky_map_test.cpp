@@ -80,7 +80,7 @@ Vector3d along(const EnvironmentMap& map, int column, int row) {
 
 } // namespace
 
-TEST_CASE("one bright pixel of a map lights a floor by its radiance, solid angle and cosine") {
+TEST_CASE("one bright pixel of a map lights a floor by its radiance, solid angle and cosine", "[long]") {
   struct Place {
     int column, row;
     double rotate_deg;
@@ -110,7 +110,7 @@ TEST_CASE("a pixel of the map below the floor's horizon gives it nothing") {
   CHECK(largest(render_text(floor_scene(diffuse, map.section())), "R") == 0.0);
 }
 
-TEST_CASE("a constant map gives the picture of its radiance, bit-identical") {
+TEST_CASE("a constant map gives the picture of its radiance, bit-identical", "[long]") {
   const MapFile map(grey_image(8, 4, [](int, int) { return 0.7f; }));
   const std::string material =
       "type = \"phong\"\nalbedo = [0.3, 0.3, 0.3]\nspecular = [0.4, 0.4, 0.4]\nexponent = 20\n";

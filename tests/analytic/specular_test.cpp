@@ -41,7 +41,7 @@ TEST_CASE("spheres that lose no light vanish in a uniform environment", "[long]"
   }
 }
 
-TEST_CASE("balls of two glasses that overlap vanish in a uniform environment, their seam too") {
+TEST_CASE("balls of two glasses that overlap vanish in a uniform environment, their seam too", "[long]") {
   // In the seam rays are reflected totally up to hundreds of times before they find their way out.
   const std::string scene = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 40.0, 64, "[80, 60]") + environment(1.0) +
                             material("glass", "glass", "ior = 1.5") + material("water", "glass", "ior = 1.33") +
@@ -78,7 +78,7 @@ TEST_CASE("a clear slab reflects 2F/(1+F) of what is before it") {
   CHECK(mean(render_text(scene), "R") == Approx(0.0769).epsilon(0.04));
 }
 
-TEST_CASE("glass absorbs by Beer's law, in the scene's unit of length") {
+TEST_CASE("glass absorbs by Beer's law, in the scene's unit of length", "[long]") {
   const double ior = GENERATE(1.0, 1.5);
   const std::string scene = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 4.0, 64) + environment(1.0) +
                             material("glass", "glass", "ior = " + number(ior) + "\nabsorption = [0.0, 1.0, 4.0]") +
@@ -94,7 +94,7 @@ TEST_CASE("glass absorbs by Beer's law, in the scene's unit of length") {
   }
 }
 
-TEST_CASE("a mirror shows a lamp at the mirrored place, times its reflectance") {
+TEST_CASE("a mirror shows a lamp at the mirrored place, times its reflectance", "[long]") {
   const auto scene = [](const std::string& things) {
     return head("0.0, 0.0, 1.5", "0.0, 0.0, 0.0", 50.0, 32, "[32, 32]") + lamp("lamp", 2.0) +
            material("mirror", "mirror", "reflectance = [0.8, 0.5, 0.2]") + things;

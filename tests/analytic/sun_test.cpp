@@ -89,7 +89,7 @@ TEST_CASE("a date stands in quotes or as TOML has dates") {
   CHECK(a.scene.lights.at(0).vector == b.scene.lights.at(0).vector);
 }
 
-TEST_CASE("sun and sky light a floor by radiance, solid angle and cosine") {
+TEST_CASE("sun and sky light a floor by radiance, solid angle and cosine", "[long]") {
   const Noon noon;
   const Vector3d exact = 0.6 / pi * (noon.irradiance * noon.cosine + irradiance(*noon.scene.sky, Vector3d::UnitY()));
   const double solid_angle = 4.0 * pi * std::pow(std::sin(0.5 * 0.265 * pi / 180.0), 2);
@@ -120,7 +120,7 @@ TEST_CASE("the sun's disc is seen, and seen in a mirror, as bright as it is", "[
   }
 }
 
-TEST_CASE("a blocker takes the sun away and leaves the sky") {
+TEST_CASE("a blocker takes the sun away and leaves the sky", "[long]") {
   const Noon noon;
   // At a distance of 2 the sun's edge is 0.009 wide, so that a disc of 0.1 hides all of it from the patch, and an
   // 800th of the sky.
@@ -157,7 +157,7 @@ TEST_CASE("lobes see the sun by sampled light and by their own rays together as 
   }
 }
 
-TEST_CASE("photons of the sun and its sky carry their flux by way of a mirror") {
+TEST_CASE("photons of the sun and its sky carry their flux by way of a mirror", "[long]") {
   const Noon noon;
   const auto flux = [](const std::string& light) {
     const PhotonScene scene("version = 1\n[caustics]\nphotons = 200000\n[[material]]\nname = \"mirror\"\n" + mirror +

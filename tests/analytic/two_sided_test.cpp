@@ -160,7 +160,7 @@ TEST_CASE("a box of one two-sided sheet is the box that faces inwards and the bo
   compare(outwards, outside);
 }
 
-TEST_CASE("a closed sheet keeps light out, and in, as well as a closed surface of one side does") {
+TEST_CASE("a closed sheet keeps light out, and in, as well as a closed surface of one side does", "[long]") {
   const bool within = GENERATE(true, false);
   CAPTURE(within);
   const std::string scene = "version = 1\n" + material("wall", 0.7, two_sided) + material("floor", 0.6, "") +
@@ -187,7 +187,8 @@ TEST_CASE("a closed sheet keeps light out, and in, as well as a closed surface o
   }
 }
 
-TEST_CASE("furnace in a two-sided sphere: pi L / (1 - rho) within, pi L outside, by radiosity and by the path tracer") {
+TEST_CASE("furnace in a two-sided sphere: pi L / (1 - rho) within, pi L outside, by radiosity and by the path tracer",
+          "[long]") {
   const double rho = 0.5, radiance = 0.2;
   const auto scene = [&](const std::string& more) {
     return "version = 1\n[render]\nsize = [16, 16]\nspp = 64\n[camera]\nposition = [0.2, 0.1, 0.3]\nlook_at = [-0.5, "
@@ -273,7 +274,7 @@ TEST_CASE("caustics fall on the side of a leaf that they come to") {
   CHECK(largest(below, "Caustic.G") == Approx(0.5 / pi / 0.49).epsilon(0.15)); // 50 photons an estimate
 }
 
-TEST_CASE("leaves over a floor: the picture of the path tracer, and no black backs") {
+TEST_CASE("leaves over a floor: the picture of the path tracer, and no black backs", "[long]") {
   std::mt19937 g(7);
   std::uniform_real_distribution<double> place(-0.8, 0.8), height(0.3, 1.0);
   std::normal_distribution<double> any;

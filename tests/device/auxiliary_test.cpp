@@ -74,7 +74,7 @@ Guides guides_of(const std::string& scene, bool by_paths) {
 
 } // namespace
 
-TEST_CASE("a diffuse wall's albedo and normal guide the denoiser as they are") {
+TEST_CASE("a diffuse wall's albedo and normal guide the denoiser as they are", "[long]") {
   const bool by_paths = GENERATE(false, true);
   const Guides found = guides_of(narrow_view + square(-3.0, 1.0, "wall"), by_paths);
   for (int k = 0; k < 3; ++k) {
@@ -84,7 +84,8 @@ TEST_CASE("a diffuse wall's albedo and normal guide the denoiser as they are") {
   }
 }
 
-TEST_CASE("behind a mirror the reflected surface guides the denoiser, its albedo dimmed by the mirror's reflectance") {
+TEST_CASE("behind a mirror the reflected surface guides the denoiser, its albedo dimmed by the mirror's reflectance",
+          "[long]") {
   const bool by_paths = GENERATE(false, true);
   const Guides found =
       guides_of(narrow_view + square(-3.0, 1.0, "mirror") + square(2.0, 4.0, "wall", false) +
@@ -97,7 +98,8 @@ TEST_CASE("behind a mirror the reflected surface guides the denoiser, its albedo
   }
 }
 
-TEST_CASE("behind glass the surface guides the denoiser, blended with what the glass reflects as its light is") {
+TEST_CASE("behind glass the surface guides the denoiser, blended with what the glass reflects as its light is",
+          "[long]") {
   const bool by_paths = GENERATE(false, true);
   const std::string slab = "[[material]]\nname = \"glass\"\ntype = \"glass\"\nior = 1.5\n[[shape]]\ntype = \"box\"\n"
                            "min = [-0.5, -0.5, -2.2]\nmax = [0.5, 0.5, -2.0]\nspacing = 0.05\nmaterial = \"glass\"\n";
@@ -111,7 +113,7 @@ TEST_CASE("behind glass the surface guides the denoiser, blended with what the g
   CHECK(found.normal[0] == Approx(0.0).margin(1e-3));
 }
 
-TEST_CASE("a rough surface guides the denoiser itself, with the reflectance of its lobe") {
+TEST_CASE("a rough surface guides the denoiser itself, with the reflectance of its lobe", "[long]") {
   const bool by_paths = GENERATE(false, true);
   struct Rough {
     std::string keys;
@@ -131,7 +133,7 @@ TEST_CASE("a rough surface guides the denoiser itself, with the reflectance of i
   }
 }
 
-TEST_CASE("where nothing is met the albedo is 1, the normal 0, and the sky is emission") {
+TEST_CASE("where nothing is met the albedo is 1, the normal 0, and the sky is emission", "[long]") {
   const bool by_paths = GENERATE(false, true);
   const bool specular = GENERATE(false, true);
   const std::string beside = "[[shape]]\ntype = \"sphere\"\ncentre = [5.0, 0.0, 0.0]\nradius = 0.5\nspacing = 0.2\n"
@@ -149,7 +151,7 @@ TEST_CASE("where nothing is met the albedo is 1, the normal 0, and the sky is em
   }
 }
 
-TEST_CASE("emission is what a lamp sends to the eye, without what the lamp reflects") {
+TEST_CASE("emission is what a lamp sends to the eye, without what the lamp reflects", "[long]") {
   const bool by_paths = GENERATE(false, true);
   const bool specular = GENERATE(false, true);
   const std::string lamp = "[[material]]\nname = \"lamp\"\ntype = \"diffuse\"\nalbedo = [0.5, 0.5, 0.5]\n"

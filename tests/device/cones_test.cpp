@@ -97,7 +97,7 @@ TEST_CASE("furnace by cones: B = E / (1 - rho), less what goes through the walls
   }
 }
 
-TEST_CASE("cones in a room with a body: the mean of a ray a pair to 5 %, each point to a tenth") {
+TEST_CASE("cones in a room with a body: the mean of a ray a pair to 5 %, each point to a tenth", "[long]") {
   const std::vector<Splat> splats = room_splats(6000);
   const std::vector<double> b = varied_radiosity(splats);
   const TraversalVariant variant = plain_variant(TraversalForm::wide);

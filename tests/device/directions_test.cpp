@@ -167,7 +167,7 @@ TEST_CASE("directions on the device: rays and bytes are points times directions,
   CHECK(h.empty());
 }
 
-TEST_CASE("directions on the device: beams see what single rays see, bit for bit") {
+TEST_CASE("directions on the device: beams see what single rays see, bit for bit", "[long]") {
   TraversalVariant single = plain_variant(TraversalForm::wide);
   if (!session().info().is_cpu) {
     WARN("no CPU device: it has no beams");

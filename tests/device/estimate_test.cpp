@@ -84,7 +84,7 @@ TEST_CASE("bytes and rays of a picture are told within a factor of 2, by every m
   }
 }
 
-TEST_CASE("photons are told, and stages that a scene has no use for with the reason", "[estimate]") {
+TEST_CASE("photons are told, and stages that a scene has no use for with the reason", "[estimate][long]") {
   const api::Context context;
   api::Scene scene = corner(0.1, true);
   scene.set("caustics.photons=100000");

@@ -30,7 +30,7 @@ std::vector<Link> mixed_links(const ClusterTree& tree, std::vector<std::uint8_t>
 
 } // namespace
 
-TEST_CASE("fmm on the device equals its twin") {
+TEST_CASE("fmm on the device equals its twin", "[long]") {
   for (const auto& splats : {inside_sphere(3000), inside_cube(20), facing_sheets(30), mixed_splats()})
     for (unsigned order = 2; order <= 6; ++order) {
       CAPTURE(splats.size(), order);

@@ -48,7 +48,7 @@ TEST_CASE("furnace: sphere", "[long]") {
   CHECK_THAT(complaint_of(s), Catch::Contains("lower the albedo"));
 }
 
-TEST_CASE("furnace: cube") {
+TEST_CASE("furnace: cube", "[long]") {
   Room room = room_of(inside_cube(58));
   check_furnace(room);
 }

@@ -44,7 +44,7 @@ GatherOptions with(GatherSampling sampling, unsigned window, bool cache = false)
 
 } // namespace
 
-TEST_CASE("gather from all: reciprocity and cache change rays and bytes, and nothing else") {
+TEST_CASE("gather from all: reciprocity and cache change rays and bytes, and nothing else", "[long]") {
   const Room room(room_splats(2700)); // several blocks of sums, of which the last is not full
   const auto exact = room.exact();
   DeviceDirect direct(session(), room.pools, room.variant, room.tree.points, {});
@@ -68,7 +68,7 @@ TEST_CASE("gather from all: reciprocity and cache change rays and bytes, and not
     }
 }
 
-TEST_CASE("gather by Monte Carlo is unbiased: the mean of its passes is what all senders give") {
+TEST_CASE("gather by Monte Carlo is unbiased: the mean of its passes is what all senders give", "[long]") {
   const Room room(room_splats(500));
   const auto exact = room.exact();
   DeviceGather random = room.make(with(GatherSampling::monte_carlo, 16));
@@ -101,7 +101,7 @@ TEST_CASE("gather by Monte Carlo is unbiased: the mean of its passes is what all
   CHECK(std::fabs(mean_z / points) < 0.19);
 }
 
-TEST_CASE("gather from windows: the fixed sender and the mean come near all, nearer with smaller windows") {
+TEST_CASE("gather from windows: the fixed sender and the mean come near all, nearer with smaller windows", "[long]") {
   const Room room(room_splats(3000));
   const auto exact = room.exact();
   for (const GatherSampling sampling : {GatherSampling::fixed, GatherSampling::mipmap}) {
@@ -162,7 +162,8 @@ TEST_CASE(
   CHECK(last < 0.7 * first);
 }
 
-TEST_CASE("gather with voxels: an empty room is open, a wall blocks, and what is smaller than a voxel is missed") {
+TEST_CASE("gather with voxels: an empty room is open, a wall blocks, and what is smaller than a voxel is missed",
+          "[long]") {
   const auto irradiance = [](const std::vector<Splat>& splats, unsigned voxels, const auto& of) {
     const Room room(splats);
     const Occupancy occupancy = voxels > 0 ? upload_occupancy(session(), points_of(room.packed), voxels) : Occupancy();

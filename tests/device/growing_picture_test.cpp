@@ -62,7 +62,7 @@ void check_same(const Picture& a, const Picture& b) {
 
 } // namespace
 
-TEST_CASE("a picture that grew is bit for bit the one that was made at once") {
+TEST_CASE("a picture that grew is bit for bit the one that was made at once", "[long]") {
   const Picture at_once = test::render_text(room);
   const Picture grown = test::render_text(room, [](RenderOptions& options) { options.progressive = true; });
   check_same(grown, at_once);

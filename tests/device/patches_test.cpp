@@ -168,7 +168,7 @@ TEST_CASE("every form and grouping meets a patch where a linear scan does", "[lo
   }
 }
 
-TEST_CASE("of patches the fronts alone are found where backs are seen through") {
+TEST_CASE("of patches the fronts alone are found where backs are seen through", "[long]") {
   const Patches p = random_patches(false, false);
   const auto rays = hard_rays(p.splats, 20'011, 29);
   const auto in_bundles = few_bundles(p.splats);
@@ -184,7 +184,7 @@ TEST_CASE("of patches the fronts alone are found where backs are seen through") 
   }
 }
 
-TEST_CASE("rays that leave a patch pass what belongs to its surface, as a linear scan says") {
+TEST_CASE("rays that leave a patch pass what belongs to its surface, as a linear scan says", "[long]") {
   const Patches p = random_patches(GENERATE(false, true), false);
   auto rays = hard_rays(p.splats, 20'000, 31);
   std::vector<cl_float4> surfaces(rays.size());

@@ -83,7 +83,7 @@ Profile run(
 
 } // namespace
 
-TEST_CASE("a profile of splats that end at borders finds nothing wrong with the variants") {
+TEST_CASE("a profile of splats that end at borders finds nothing wrong with the variants", "[long]") {
   Ball ball;
   for (std::uint32_t i = 0; i < ball.splats.size(); i += 2) {
     const Eigen::Vector3f across = Eigen::Map<const Eigen::Vector3f>(ball.splats[i].normal).unitOrthogonal();
@@ -99,7 +99,7 @@ TEST_CASE("a profile of splats that end at borders finds nothing wrong with the 
   }
 }
 
-TEST_CASE("a profile measures the reference and all that is asked for, and finds nothing wrong with them") {
+TEST_CASE("a profile measures the reference and all that is asked for, and finds nothing wrong with them", "[long]") {
   const Ball ball;
   ProfileRequest request = ball.request();
   request.variants = some_variants();
@@ -122,7 +122,7 @@ TEST_CASE("a profile measures the reference and all that is asked for, and finds
   }
 }
 
-TEST_CASE("photons end alike by all variants, in trees of any order") {
+TEST_CASE("photons end alike by all variants, in trees of any order", "[long]") {
   for (const char* caustics : {"photons = 1000", "power = \"equal\""}) {
     CAPTURE(caustics);
     const PhotonScene mirrors(caustics_scene(caustics));
@@ -176,7 +176,7 @@ TEST_CASE("a profile that is stopped tells what is complete and what is not") {
   }
 }
 
-TEST_CASE("a variant that the device cannot take is told of, and the others are measured") {
+TEST_CASE("a variant that the device cannot take is told of, and the others are measured", "[long]") {
   const Ball ball;
   ProfileRequest request = ball.request();
   request.variants = {plain_variant(TraversalForm::wide)};

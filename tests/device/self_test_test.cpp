@@ -55,7 +55,7 @@ TEST_CASE("a device that works passes its self-test, by the default variant of C
   CHECK(said(true).empty());
 }
 
-TEST_CASE("a device whose answers are wrong, or none, does not pass its self-test", "[self-test]") {
+TEST_CASE("a device whose answers are wrong, or none, does not pass its self-test", "[self-test][long]") {
   const auto expect = [](const char* to, const char* says) {
     const AlteredKernels altered("traverse/trace.cl", "answers[i].splat = hit.splat;", to);
     for (const bool as_gpu : {false, true})

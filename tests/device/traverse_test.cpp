@@ -92,7 +92,7 @@ TEST_CASE("a million hard rays find the splat that a linear scan finds, through 
   }
 }
 
-TEST_CASE("every variant's trees and work-groups find what a linear scan finds") {
+TEST_CASE("every variant's trees and work-groups find what a linear scan finds", "[long]") {
   const auto splats = mixed_splats();
   const auto rays = hard_rays(splats, 20'011, 13); // no whole number of groups
   const auto truth = trace_all(splats, rays);
@@ -241,7 +241,7 @@ std::vector<RayAnswer> trace_in_packets(const std::vector<Splat>& splats, const 
 
 } // namespace
 
-TEST_CASE("packets of rays find what the rays find one by one") {
+TEST_CASE("packets of rays find what the rays find one by one", "[long]") {
   const auto splats = mixed_splats();
   const auto rays = bundles(splats);
   const auto truth = trace_all(splats, rays);

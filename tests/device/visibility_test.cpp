@@ -62,7 +62,7 @@ struct TracedRoom {
 
 } // namespace
 
-TEST_CASE("segments are blocked as a linear scan in double precision says, in every variant") {
+TEST_CASE("segments are blocked as a linear scan in double precision says, in every variant", "[long]") {
   const auto splats =
       GENERATE(room_splats(400), mixed_splats(), sheet_splats(room_splats(200)), sheet_splats(mixed_splats()));
   const auto segments = random_segments(splats.size(), 30'011); // no whole number of groups

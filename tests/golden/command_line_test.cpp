@@ -67,7 +67,7 @@ TEST_CASE("render writes picture, stats and trace, and names the picture on stdo
   CHECK_THAT(run.err, Contains("variant: " + stats["variant"]["name"].get<std::string>()));
 }
 
-TEST_CASE("the scene's hash is another where light is computed another way") {
+TEST_CASE("the scene's hash is another where light is computed another way", "[long]") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("scene.toml", small_scene());
   std::set<std::string> hashes;
@@ -90,7 +90,7 @@ TEST_CASE("the scene's hash is another where light is computed another way") {
   }
 }
 
-TEST_CASE("a mirror adds the stages normals and photon, and the channels of their light") {
+TEST_CASE("a mirror adds the stages normals and photon, and the channels of their light", "[long]") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("mirror.toml", mirror_scene());
   const auto stats_of = [&](const std::string& options) {
@@ -200,7 +200,7 @@ TEST_CASE("unknown devices and unwritable places have exit codes of their own") 
   CHECK(run_program("render " + scene + " -o " + folder.file("y.exr") + " --stats /dev/full").code == 5);
 }
 
-TEST_CASE("a second start builds no kernel, and a damaged cache is built anew") {
+TEST_CASE("a second start builds no kernel, and a damaged cache is built anew", "[long]") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", direct_scene());
   for (const char* cache : {"ours", "poc"})
@@ -244,7 +244,7 @@ TEST_CASE("the same bits on 1, 2 and 4 threads") {
   }
 }
 
-TEST_CASE("an interrupted render keeps a partial picture, and a killed one keeps the old picture") {
+TEST_CASE("an interrupted render keeps a partial picture, and a killed one keeps the old picture", "[long]") {
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene()), out = folder.file("x.exr");
   const std::string slow = "render " + scene + " --size 600x2000 --spp 128 -o " + out;

@@ -47,7 +47,7 @@ bool is_whole(const Picture& picture) {
 
 } // namespace
 
-TEST_CASE("render --denoise denoises each light and keeps what was rendered") {
+TEST_CASE("render --denoise denoises each light and keeps what was rendered", "[long]") {
   const FakeOidn fake;
   const TemporaryFolder folder;
   const std::string scene = folder.write("mirror.toml", mirror_scene());
@@ -106,7 +106,7 @@ TEST_CASE("without the library render --denoise ends before there is any work") 
   CHECK_THAT(refused("POINTGI_OIDN=" + fake_oidn("works") + " FAKE_OIDN=crash"), Contains("crashes"));
 }
 
-TEST_CASE("where the library fails at the end, the picture is written as it was rendered") {
+TEST_CASE("where the library fails at the end, the picture is written as it was rendered", "[long]") {
   const FakeOidn fake("late");
   const TemporaryFolder folder;
   const std::string scene = folder.write("ball.toml", small_scene());

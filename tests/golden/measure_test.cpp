@@ -29,7 +29,7 @@ const MeasuredRun* named(const Trade& trade, const std::string& name) {
 
 } // namespace
 
-TEST_CASE("measure finds a front, keeps it, and goes on with it") {
+TEST_CASE("measure finds a front, keeps it, and goes on with it", "[long]") {
   const Measuring setting;
   const std::string command = "--knobs render.spp,radiosity.directions --size 32x32 --budget 10 --target 1";
   const Run run = setting.measure(command);
@@ -130,7 +130,7 @@ TEST_CASE("measure says what is wrong before it begins") {
   CHECK_THAT(run.err, Contains("cannot create the folder"));
 }
 
-TEST_CASE("a measurement that Ctrl-C ends keeps what it has") {
+TEST_CASE("a measurement that Ctrl-C ends keeps what it has", "[long]") {
   const Measuring setting;
   // The shell sends the signal once, as soon as a second setting has its picture, and returns the program's exit code.
   const Run run = setting.measure("--knobs spp --size 32x32 --budget 600",
@@ -147,7 +147,7 @@ TEST_CASE("a measurement that Ctrl-C ends keeps what it has") {
   CHECK(std::filesystem::exists(setting.out + "/report.html"));
 }
 
-TEST_CASE("an interrupted measurement keeps what it has") {
+TEST_CASE("an interrupted measurement keeps what it has", "[long]") {
   const Measuring setting;
   std::filesystem::create_directories(setting.out + "/pictures");
   MeasureOptions options;

@@ -175,7 +175,7 @@ TEST_CASE("a scene with a mirror has its photons timed, and a variant whose phot
              Contains(std::string(wide_packet) + ": WRONG: ") && Contains(" photons differ from the reference"));
 }
 
-TEST_CASE("a wrong picture is rejected, though every given ray is answered right") {
+TEST_CASE("a wrong picture is rejected, though every given ray is answered right", "[long]") {
   const Setting s;
   std::filesystem::copy(POINTGI_SOURCE_DIR "/kernels", s.folder.file("kernels"),
                         std::filesystem::copy_options::recursive);
@@ -190,7 +190,7 @@ TEST_CASE("a wrong picture is rejected, though every given ray is answered right
   CHECK_THAT(run.out, Contains(": WRONG: ") && Contains("picture's eye rays") && !Contains("eye rays differ"));
 }
 
-TEST_CASE("one wrong pixel is enough to be rejected") {
+TEST_CASE("one wrong pixel is enough to be rejected", "[long]") {
   const Setting s;
   std::filesystem::copy(POINTGI_SOURCE_DIR "/kernels", s.folder.file("kernels"),
                         std::filesystem::copy_options::recursive);
@@ -210,7 +210,7 @@ TEST_CASE("one wrong pixel is enough to be rejected") {
   CHECK_THAT(run.out, Contains("best: step") || Contains("no variant"));
 }
 
-TEST_CASE("a filtered profile stores nothing unless it is told to") {
+TEST_CASE("a filtered profile stores nothing unless it is told to", "[long]") {
   const Setting s;
   const Run run = s.profile(std::string("--rounds 1 --filter ") + reference);
   REQUIRE(run.code == 0);
@@ -219,7 +219,7 @@ TEST_CASE("a filtered profile stores nothing unless it is told to") {
   CHECK(json_of(s.folder.file("out/profile.json"))["stored"].is_null());
 }
 
-TEST_CASE("profile lists variants, and writes their programs without a device") {
+TEST_CASE("profile lists variants, and writes their programs without a device", "[long]") {
   const TemporaryFolder folder;
   const Run list = run_program("profile --list");
   CHECK(list.code == 0);
@@ -263,7 +263,7 @@ TEST_CASE("what is wrong with a profile's options is said before the work") {
   CHECK(s.profile("--device quantum").code == 4);
 }
 
-TEST_CASE("an interrupted profile keeps what was measured and stores nothing") {
+TEST_CASE("an interrupted profile keeps what was measured and stores nothing", "[long]") {
   const Setting s;
   // Whenever the signal comes within this, rounds are left. --foreground: it comes once.
   const Run run = s.profile(std::string("--rounds 1000 --store --filter ") + reference,

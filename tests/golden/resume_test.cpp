@@ -51,7 +51,7 @@ void check_tidy(const Work& work) {
 
 } // namespace
 
-TEST_CASE("a render that was killed after any piece of work goes on to the same bits", "[resume]") {
+TEST_CASE("a render that was killed after any piece of work goes on to the same bits", "[resume][long]") {
   for (const char* options : {"", "--progressive --spp 96"}) {
     const Work work("render", scene_of_all_stages(), options);
     REQUIRE(run_program(work.command).code == 0);
@@ -91,7 +91,7 @@ TEST_CASE("a bake and a path-traced picture that were killed go on to the same b
   check_tidy(paths);
 }
 
-TEST_CASE("an interrupted render tells how to go on, and --resume does", "[resume]") {
+TEST_CASE("an interrupted render tells how to go on, and --resume does", "[resume][long]") {
   const Work work("render", small_scene(), "--spp 64");           // its size is given below
   REQUIRE(run_program(work.command + " --size 40x30").code == 0); // builds the kernels
   const std::string slow = work.command + " --size 600x2000";

@@ -168,7 +168,7 @@ TEST_CASE("a file too large for a scene is refused unread", "[scene][golden]") {
                           "into a PLY file that a [[cloud]] names");
 }
 
-TEST_CASE("a million lights load", "[scene][golden]") {
+TEST_CASE("a million lights load", "[scene][golden][long]") {
   const Scratch scratch;
   const int count = 1'000'000;
   std::string text = one_shape;

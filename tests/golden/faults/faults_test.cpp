@@ -41,7 +41,7 @@ void check_kinds(const FaultScene& scene, const std::vector<std::string>& kinds,
 
 } // namespace
 
-TEST_CASE("faults: an OpenCL call that fails ends in the right picture or in one clear error", "[faults]") {
+TEST_CASE("faults: an OpenCL call that fails ends in the right picture or in one clear error", "[faults][long]") {
   check_kinds(FaultScene(fmm_way()), {"device", "build", "buffer", "enqueue", "read", "event"});
   check_kinds(FaultScene(images_way()), {"image"});
 }
@@ -59,11 +59,11 @@ TEST_CASE("faults: a program that the driver does not build is told with the dri
   }
 }
 
-TEST_CASE("faults: a file that is not read or written leaves the old ones, and one clear error", "[faults]") {
+TEST_CASE("faults: a file that is not read or written leaves the old ones, and one clear error", "[faults][long]") {
   check_kinds(FaultScene(fmm_way()), {"file"});
 }
 
-TEST_CASE("faults: a run that is killed while it writes leaves old files or whole new ones", "[faults]") {
+TEST_CASE("faults: a run that is killed while it writes leaves old files or whole new ones", "[faults][long]") {
   check_kinds(FaultScene(fmm_way()), {"killed"});
 }
 
@@ -76,11 +76,11 @@ TEST_CASE("faults: threads that are not to be had are done without", "[faults]")
   }
 }
 
-TEST_CASE("faults: memory that the host refuses ends in one clear error, once and from then on", "[faults]") {
+TEST_CASE("faults: memory that the host refuses ends in one clear error, once and from then on", "[faults][long]") {
   check_kinds(FaultScene(fmm_way()), {"allocation", "exhausted"}, 10);
 }
 
-TEST_CASE("faults: programs that the driver does not take from the cache are compiled again", "[faults]") {
+TEST_CASE("faults: programs that the driver does not take from the cache are compiled again", "[faults][long]") {
   const FaultScene scene(cached_programs_way());
   REQUIRE(scene.calls().counts.count("clCreateProgramWithBinary") == 1);
   for (const char* call : {"clCreateProgramWithBinary", "clBuildProgram"}) {
@@ -141,7 +141,7 @@ TEST_CASE("faults: a device without images makes the same picture of buffers", "
   CHECK_THAT(asked.err, Contains("images want a device with images") && Contains("leave them out"));
 }
 
-TEST_CASE("faults: launches stay short of a watchdog that ends those of over two seconds", "[faults]") {
+TEST_CASE("faults: launches stay short of a watchdog that ends those of over two seconds", "[faults][long]") {
   // A band of the picture, or all photons, would be a launch of over two seconds.
   const std::string slow = "DEVICE_ITEMS_PER_SECOND=10000 ";
   for (FaultScene::Way way : {fmm_way(), directions_way()}) {

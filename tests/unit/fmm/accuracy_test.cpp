@@ -52,7 +52,7 @@ void check_orders(const std::vector<double>& errors) {
 
 } // namespace
 
-TEST_CASE("fmm against the direct sum: inside of a sphere") {
+TEST_CASE("fmm against the direct sum: inside of a sphere", "[long]") {
   check_orders(errors_of_orders(inside_sphere(20000), 5));
 }
 

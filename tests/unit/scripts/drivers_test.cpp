@@ -74,7 +74,7 @@ TEST_CASE("an unknown driver is named with those that there are", "[drivers_test
   CHECK_THAT(output, Contains("nonesuch") && Contains("intel") && Contains("rusticl"));
 }
 
-TEST_CASE("device tests are run one by one: a crash or a hang loses one case", "[drivers_test]") {
+TEST_CASE("device tests are run one by one: a crash or a hang loses one case", "[drivers_test][long]") {
   const test::TemporaryFolder folder;
   folder.write("program", program);
   std::filesystem::permissions(folder.file("program"), std::filesystem::perms::owner_all);
@@ -98,7 +98,7 @@ TEST_CASE("device tests are run one by one: a crash or a hang loses one case", "
   CHECK_THAT(resumed, Contains("2 of 2 device tests pass\n"));
 }
 
-TEST_CASE("device tests: quick ones go first, and time that is over is said", "[drivers_test]") {
+TEST_CASE("device tests: quick ones go first, and time that is over is said", "[drivers_test][long]") {
   const test::TemporaryFolder folder;
   folder.write("program", program);
   std::filesystem::permissions(folder.file("program"), std::filesystem::perms::owner_all);

@@ -71,7 +71,7 @@ TEST_CASE("horse: normals and winding point inwards", "[cloud][complete][scans]"
   CHECK(agreement(bare, cloud->normal) > 0.99); // the ears are thinner than their spacing
 }
 
-TEST_CASE("kinect: a depth image from the origin", "[cloud][complete][scans]") {
+TEST_CASE("kinect: a depth image from the origin", "[cloud][complete][scans][long]") {
   auto cloud = scan("kinect_region_growing_rgb.ply");
   if (!cloud) return;
   CHECK(complete(*cloud).normals_from == "estimated (towards the sensor at the origin)");
@@ -92,7 +92,7 @@ TEST_CASE("autzen: airborne lidar faces upwards", "[cloud][complete][scans]") {
   CHECK(static_cast<double>(up) / static_cast<double>(cloud->size()) > 0.9); // measured 0.93; crowns of trees lean
 }
 
-TEST_CASE("pond and lion: open scans keep their normals", "[cloud][complete][scans]") {
+TEST_CASE("pond and lion: open scans keep their normals", "[cloud][complete][scans][long]") {
   for (const std::string name : {"pond.ply", "lion_takanawa.ply"}) {
     auto cloud = scan(name);
     if (!cloud) continue;

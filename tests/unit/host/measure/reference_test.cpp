@@ -82,7 +82,7 @@ TEST_CASE("a single reference's variance is taken off") {
   CHECK(holds(estimate_of(reference.errors(noisy(0.0, 6))), 0.0));
 }
 
-TEST_CASE("what noise adds by the denominator of relMSE is taken off") {
+TEST_CASE("what noise adds by the denominator of relMSE is taken off", "[long]") {
   // Of skewed noise, too, as path tracers have it, and of a picture that is biased as well as noisy.
   constexpr unsigned trials = 40;
   const Picture exact = noisy(0.0, 1);

@@ -68,7 +68,7 @@ TEST_CASE("the bound of light between surfaces: nothing of a ball, all of a room
   CHECK(bound({}, 0.5) == 0.0);
 }
 
-TEST_CASE("a sample of the V-map's questions tells how many there will be, and asks few of them") {
+TEST_CASE("a sample of the V-map's questions tells how many there will be, and asks few of them", "[long]") {
   const ClusterTree tree = build_clusters(room_splats(1500), {});
   LinkOptions options;
   options.epsilon = 2e-3f; // many links of few points
