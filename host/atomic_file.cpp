@@ -1,6 +1,7 @@
 #include "host/atomic_file.h"
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -52,12 +53,12 @@ std::string follow_link(const std::string& path) {
   return target.string();
 }
 
-/// A hidden name beside `target` that no other run is likely to choose; O_EXCL settles the rest.
 /// What the names of temporary files of a target begin with. A name may have 255 bytes: it leaves room for the suffix.
 std::string temporary_prefix(const std::string& target) {
   return "." + fs::path(target).filename().string().substr(0, 180) + ".";
 }
 
+/// A hidden name beside `target` that no other run is likely to choose; O_EXCL settles the rest.
 std::string temporary_name(const std::string& target) {
   static thread_local std::random_device entropy;
   char suffix[64];
@@ -142,15 +143,23 @@ void AtomicFile::commit_unsynced() {
 }
 
 void remove_unfinished(const std::string& final_path) {
-  const std::string prefix = temporary_prefix(final_path);
+  const std::string target = follow_link(final_path), prefix = temporary_prefix(target);
+  const std::size_t name_size = fs::path(target).filename().string().size();
+  if (prefix.size() != name_size + 2) return; // names that were cut may be another file's
   std::error_code ignored;
   std::vector<fs::path> left;
-  for (const auto& entry : fs::directory_iterator(folder_of(final_path), ignored)) {
+  for (const auto& entry : fs::directory_iterator(folder_of(target), ignored)) {
     const std::string name = entry.path().filename().string();
-    const std::size_t rest = name.size() - prefix.size(); // "<process>.<8 digits>.tmp"
-    if (name.rfind(prefix, 0) == 0 && entry.path().extension() == ".tmp" &&
-        std::count(name.end() - static_cast<std::ptrdiff_t>(rest), name.end(), '.') == 2)
-      left.push_back(entry.path());
+    if (name.rfind(prefix, 0) != 0) continue;
+    long process = 0;
+    unsigned number = 0;
+    int end = 0;
+    const std::string rest = name.substr(prefix.size()); // "<process>.<8 digits>.tmp"
+    if (std::sscanf(rest.c_str(), "%ld.%8x.tmp%n", &process, &number, &end) != 2 ||
+        end != static_cast<int>(rest.size()) || process <= 0)
+      continue;
+    const bool lives = ::kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH;
+    if (!lives) left.push_back(entry.path());
   }
   for (const fs::path& file : left)
     fs::remove(file, ignored);

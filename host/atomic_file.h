@@ -48,7 +48,8 @@ private:
   bool committed_ = false;
 };
 
-/// Removes what runs that were killed have left of an AtomicFile of this path: nobody else may be writing it.
+/// Removes what processes of this machine that are no more have left of an AtomicFile of this path. Throws as
+/// AtomicFile on a link that leads nowhere.
 void remove_unfinished(const std::string& final_path);
 
 } // namespace pointgi

@@ -1,9 +1,12 @@
 #include "host/api/scene_hash.h"
 #include "host/api/parts.h"
 #include "host/cache/binary_cache.h"
+#include "host/cl/kernel_source.h"
 #include "host/lights/environment_map.h"
 #include "host/passes/variant.h"
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 namespace pointgi::api {
 
@@ -47,15 +50,26 @@ std::string scene_hash(const Pool<OctreePoint>& points, const DeviceLighting& li
   return text;
 }
 
-std::string checkpoint_key(const Prepared& prepared, const std::string& integrator, const FilmOptions* film) {
+std::string checkpoint_key(const Scene& from, const Prepared& prepared, const std::string& integrator,
+                           const FilmOptions* film) {
   const Prepared::Parts& parts = *prepared.parts();
   const pointgi::Scene& scene = parts.scene;
+  // All settings, overrides among them: what they mean for surfaces, borders and clouds is not taken apart.
+  std::ostringstream document;
+  document << from.parts()->document.table;
   const PreparedScene& ready = parts.ready;
   const DeviceInfo& device = parts.context->session.info();
+  const char* options = std::getenv("POINTGI_CL_OPTIONS");
   std::string key =
-      fmt::format("pointgi " POINTGI_VERSION "; {}; root cube {:a}; {} {} {}; {}",
+      fmt::format("pointgi " POINTGI_VERSION
+                  ", kernels {:x} {}; {} {:x} quality {}; points {:x} {:x}; root cube {:a} {:a} {:a} {:a}; "
+                  "light {:a}; {} {} {}; {} {:a} {}",
+                  kernels_hash(), options != nullptr ? options : "",
                   scene_hash(ready.points, ready.lighting, scene, integrator, film != nullptr ? film->paths : ""),
-                  ready.frame.side, device.platform, device.name, device.driver, build_options(ready.choice.variant));
+                  fnv1a(document.str()), parts.quality, fnv1a(bytes_of(ready.ids)), fnv1a(bytes_of(ready.first_ids)),
+                  ready.frame.side, ready.frame.origin.x(), ready.frame.origin.y(), ready.frame.origin.z(),
+                  ready.lighting.radiance.scale, device.platform, device.name, device.driver,
+                  name_of(ready.choice.variant), ready.choice.variant.step_delta, build_options(ready.choice.variant));
   if (film == nullptr) return key;
   const RenderSettings& render = scene.render;
   key += fmt::format("; {} x {}, {} samples of seed {}, depth {}, auxiliary {}; ", render.width, render.height,

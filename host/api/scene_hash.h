@@ -11,8 +11,9 @@ namespace pointgi::api {
 std::string scene_hash(const Pool<OctreePoint>& points, const DeviceLighting& lighting, const pointgi::Scene& scene,
                        const std::string& integrator, const std::string& paths);
 
-/// Everything that the bits of the light of a prepared scene depend on, and those of a film of it, as text: the scene,
-/// the view, the device, its kernels and this program. `film`: null: light alone.
-std::string checkpoint_key(const Prepared& prepared, const std::string& integrator, const FilmOptions* film);
+/// Everything that the bits of the light of a prepared scene depend on, and those of a film of it, as text: the scene
+/// that it was prepared from, the view, the device, the kernels and this program. `film`: null: light alone.
+std::string checkpoint_key(const Scene& scene, const Prepared& prepared, const std::string& integrator,
+                           const FilmOptions* film);
 
 } // namespace pointgi::api

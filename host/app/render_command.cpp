@@ -265,7 +265,11 @@ ExitCode run_render(const RenderOptions& options) {
   }
   const api::Prepared prepared(context, scene, run.control());
   const bool of_kind = !setting && options.integrator != "path";
-  const bool growing = grows(options, prepared, pixels);
+  bool growing = grows(options, prepared, pixels);
+  // As the run that is gone on from: one keeps passes, the other rows.
+  const std::string kept = checkpoint_folder(output_of(options));
+  if (options.resume && Checkpoint::is_in(kept, "rows-")) growing = false;
+  if (options.resume && Checkpoint::is_in(kept, "film-")) growing = true;
   BeforeLight before_light;
   if (of_kind && has_open_goal(options))
     before_light = [&](PictureGoal& goal, const PreviewCost&) {
@@ -284,7 +288,8 @@ ExitCode run_render(const RenderOptions& options) {
   std::unique_ptr<Checkpoint> checkpoint;
   if (options.resume) remove_unfinished(output.png_path());
   if (!has_open_goal(options))
-    checkpoint = open_checkpoint(options, output.exr_path(), checkpoint_key(prepared, options.integrator, &film));
+    checkpoint =
+        open_checkpoint(options, output.exr_path(), checkpoint_key(scene, prepared, options.integrator, &film));
   const PictureRun picture{context,       prepared,        film, options.integrator == "path", pixels,
                            run.control(), checkpoint.get()};
   const MadePictureFiles made = resumable(checkpoint.get(), output.exr_path(), [&] {

@@ -25,7 +25,10 @@ void close_checkpoint(Checkpoint* checkpoint, const std::string& output, bool in
   if (checkpoint == nullptr) return;
   if (checkpoint->found() > 0) spdlog::info("{} pieces of work were an earlier run's", checkpoint->found());
   if (!interrupted) return checkpoint->remove();
-  checkpoint->flush();
+  try {
+    checkpoint->flush();
+  } catch (const std::bad_alloc&) { // the run has ended for a reason of its own
+  }
   if (const std::string folder = checkpoint_folder(output); Checkpoint::is_in(folder))
     spdlog::info("the same command with --resume goes on from {}", folder);
 }

@@ -25,6 +25,8 @@ struct Header {
 };
 static_assert(sizeof(Header) == 40, "no padding in the file");
 
+constexpr const char* given_up = ". The run goes on without keeping what it has done: it could not be resumed";
+
 thread_local Checkpoint* current = nullptr;
 
 std::uint64_t hash_of(const std::string& key, const std::string& bytes) {
@@ -43,12 +45,12 @@ bool is_of_checkpoint(const fs::path& file) {
 
 } // namespace
 
-Checkpoint::Checkpoint(CheckpointOptions options) : options_(std::move(options)), begun_(options_.resumes) {}
+Checkpoint::Checkpoint(CheckpointOptions options) : options_(std::move(options)) {}
 
-bool Checkpoint::is_in(const std::string& folder) {
+bool Checkpoint::is_in(const std::string& folder, const std::string& name) {
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed))
-    if (is_kept(entry.path())) return true;
+    if (is_kept(entry.path()) && entry.path().filename().string().rfind(name, 0) == 0) return true;
   return false;
 }
 
@@ -90,8 +92,13 @@ std::optional<std::string> Checkpoint::find(const std::string& name) {
       !file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
     return refused("cannot be read");
   if (hash_of(key, bytes) != header.hash) return refused("is damaged");
-  if (key != options_.key) return refused("is of another scene, other settings, or another device");
+  if (key != options_.key) {
+    if (!foreign_) refused("is of another scene, other settings, or another device, as may be other pieces beside it");
+    foreign_ = true;
+    return std::nullopt;
+  }
   ++found_;
+  begun_ = true; // what lies there is this run's own
   return bytes;
 }
 
@@ -121,9 +128,15 @@ void Checkpoint::write_locked(const std::string& name, const std::string& bytes)
     file.commit_unsynced(); // the hash tells what a power cut has left of it
   } catch (const Error& error) {
     failed_ = true;
-    warn(std::string(error.what()) + ". The run goes on without keeping what it has done: it could not be resumed");
+    warn(error.what() + std::string(given_up));
   }
   kept_at_ = Clock::now();
+}
+
+void Checkpoint::give_up(const std::string& why) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!failed_) warn(why + given_up);
+  failed_ = true;
 }
 
 void Checkpoint::keep(const std::string& name, const std::string& bytes) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,11 +44,15 @@ public:
   /// For a run that ends before its time: keeps what waits, unless all that the run has done took too little.
   void flush();
 
-  /// The run is done: the folder goes.
+  /// From now on nothing is kept, which is told once: memory that pieces need is not there, say.
+  void give_up(const std::string& why);
+
+  /// The run is done: the folder goes, unless it holds another run's work alone.
   void remove();
 
   /// Whether an earlier run has left anything, of whatever key.
-  static bool is_in(const std::string& folder);
+  /// `name`: that begins so.
+  static bool is_in(const std::string& folder, const std::string& name = {});
   std::size_t found() const { return found_; } ///< pieces
 
 private:
@@ -64,9 +69,10 @@ private:
   std::size_t waiting_bytes_ = 0;
   Clock::time_point kept_at_ = Clock::now();
   std::size_t found_ = 0;
-  bool begun_ = false;  ///< the folder holds nothing of other runs
-  bool kept_ = false;   ///< something, in this run
-  bool failed_ = false; ///< and is left alone from then on
+  bool begun_ = false;   ///< the folder holds nothing of other runs
+  bool kept_ = false;    ///< something, in this run
+  bool failed_ = false;  ///< and is left alone from then on
+  bool foreign_ = false; ///< pieces of another key were met, and told
 };
 
 /// Makes `checkpoint` the one of this thread until its end; null: nothing is kept or found. It must live as long.
@@ -99,10 +105,13 @@ T kept_or_made(const std::string& name, const Make& make) {
   }
   const Clock::time_point begun = Clock::now();
   T made = make();
-  if (checkpoint->is_worth(seconds_since(begun))) {
+  if (!checkpoint->is_worth(seconds_since(begun))) return made;
+  try { // a piece in memory twice: what it is kept for must not fail for that
     Packer to;
     pack(to, made);
     checkpoint->keep(number, to.take());
+  } catch (const std::bad_alloc&) {
+    checkpoint->give_up("there is no memory for what would be kept of the work");
   }
   return made;
 }

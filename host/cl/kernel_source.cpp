@@ -1,4 +1,5 @@
 #include "host/cl/kernel_source.h"
+#include "host/cache/binary_cache.h"
 #include "host/cl/embedded_kernels.h"
 #include "host/error.h"
 #include <algorithm>
@@ -111,6 +112,13 @@ std::string kernel_source(const std::string& file) {
   Flattener flattener;
   flattener.append(file, "");
   return std::move(flattener.out);
+}
+
+std::uint64_t kernels_hash() {
+  std::uint64_t hash = fnv1a("kernels");
+  for (const EmbeddedFile& file : embedded_kernels())
+    hash = fnv1a(kernel_file(file.name), hash);
+  return hash;
 }
 
 } // namespace pointgi

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 namespace pointgi {
@@ -11,5 +12,8 @@ std::string kernel_source(const std::string& file);
 
 /// The bare text of one file below kernels/ ("tuned/cpu.toml"), from the same two places.
 std::string kernel_file(const std::string& name);
+
+/// Of all files below kernels/, from the same two places: another number where any of them was changed.
+std::uint64_t kernels_hash();
 
 } // namespace pointgi

@@ -9,7 +9,8 @@ namespace pointgi {
 GrowingFilm::GrowingFilm(Session& session, const DevicePools& pools, const RenderRequest& request)
     : request_(request), passes_(session, pools, request), width_(request.window.x1 - request.window.x0),
       height_(request.window.y1 - request.window.y0),
-      bands_(static_cast<std::size_t>((height_ + band_rows - 1) / band_rows)), samples_(bands_.size(), 0) {}
+      bands_(static_cast<std::size_t>((height_ + band_rows - 1) / band_rows)), samples_(bands_.size(), 0),
+      seconds_(bands_.size()) {}
 
 void GrowingFilm::go_on_from_checkpoint() {
   is_kept_ = true;
@@ -20,6 +21,9 @@ void GrowingFilm::go_on_from_checkpoint() {
     if (!kept || kept->sums.size() != row * static_cast<std::size_t>(rows)) continue;
     bands_[b] = std::move(kept->sums);
     samples_[b] = kept->samples;
+    seconds_[b] = {kept->eye_seconds, kept->device_seconds};
+    totals_.eye_seconds += kept->eye_seconds;
+    totals_.device_seconds += kept->device_seconds;
   }
 }
 
@@ -48,13 +52,18 @@ void GrowingFilm::grow(pg_uint samples, const std::function<void(double)>& progr
                               std::copy_n(&film[y * part], part,
                                           &sums[y * row + channels * static_cast<std::size_t>(column)]);
                           }};
+    const double eye_before = totals_.eye_seconds, all_before = totals_.device_seconds;
     passes_.run(
         {first_row, rows, samples_[b], samples}, films, totals_,
         [&](double share) { progress((static_cast<double>(b) + share) / static_cast<double>(bands_.size())); }, stop);
     if (totals_.interrupted) return;
     bands_[b] = std::move(sums);
     samples_[b] = samples;
-    if (is_kept_) keep_band(current_checkpoint(), "film-", first_row, BandSums{bands_[b], samples});
+    seconds_[b].first += totals_.eye_seconds - eye_before;
+    seconds_[b].second += totals_.device_seconds - all_before;
+    if (is_kept_)
+      keep_band(current_checkpoint(), "film-", first_row,
+                BandSums{bands_[b], samples, seconds_[b].first, seconds_[b].second});
   }
 }
 

@@ -33,8 +33,9 @@ private:
   const RenderRequest& request_;
   BandPasses passes_;
   int width_, height_;
-  std::vector<std::vector<float>> bands_; ///< sums of each, [rows x width x film_channels]; empty: nothing yet
-  std::vector<pg_uint> samples_;          ///< of each band
+  std::vector<std::vector<float>> bands_;          ///< sums of each, [rows x width x film_channels]; empty: nothing yet
+  std::vector<pg_uint> samples_;                   ///< of each band
+  std::vector<std::pair<double, double>> seconds_; ///< of each band: of the eye rays, and all of the device's
   RenderTotals totals_;
   bool is_kept_ = false; ///< in the checkpoint
 };

@@ -27,11 +27,11 @@ void unpack(Unpacker& from, FinishedBand& band) {
 }
 
 void pack(Packer& to, const BandSums& band) {
-  to << band.sums << band.samples;
+  to << band.sums << band.samples << band.eye_seconds << band.device_seconds;
 }
 
 void unpack(Unpacker& from, BandSums& band) {
-  from >> band.sums >> band.samples;
+  from >> band.sums >> band.samples >> band.eye_seconds >> band.device_seconds;
 }
 
 void add(const RenderTotals& of_rows, RenderTotals& to) {

@@ -15,8 +15,9 @@ void unpack(Unpacker& from, FinishedBand& band);
 
 /// A band of a picture that grows.
 struct BandSums {
-  std::vector<float> sums; ///< [rows x width x film_channels]; empty: nothing yet
-  pg_uint samples = 0;     ///< a pixel
+  std::vector<float> sums;                        ///< [rows x width x film_channels]; empty: nothing yet
+  pg_uint samples = 0;                            ///< a pixel
+  double eye_seconds = 0.0, device_seconds = 0.0; ///< that they took
 };
 void pack(Packer& to, const BandSums& band);
 void unpack(Unpacker& from, BandSums& band);
@@ -41,9 +42,13 @@ std::optional<T> kept_band(const char* kind, int number) {
 template <typename T>
 void keep_band(Checkpoint* checkpoint, const char* kind, int number, const T& band) {
   if (checkpoint == nullptr) return;
-  Packer to;
-  pack(to, band);
-  checkpoint->keep_soon(kind + std::to_string(number), to.take());
+  try {
+    Packer to;
+    pack(to, band);
+    checkpoint->keep_soon(kind + std::to_string(number), to.take());
+  } catch (const std::bad_alloc&) {
+    checkpoint->give_up("there is no memory for what would be kept of the picture");
+  }
 }
 
 } // namespace pointgi

@@ -312,6 +312,8 @@ void go_on_from_kept(Session& session, const DevicePools& pools, const IndirectR
   stages.skip(light.method != nullptr ? light.method->name : radiosity_methods().front()->name, reason);
   log_info("radiosity: {}", reason);
   if (light.method == nullptr) return;
+  if (const std::string complaint = complaint_of(light.solution); !complaint.empty())
+    log_warning("radiosity: {}", complaint);
   light.entered = entering_light(request, light.direct);
   light.prepare = [&session, &pools, &request, &stages, method = light.method] {
     const std::vector<std::uint8_t> exchanging = exchanging_materials(request.scene);
@@ -352,12 +354,14 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   if (!method.is_linear)
     throw std::logic_error("radiosity: light added to what a method that is not linear has solved");
   bool made = false;
+  std::uint64_t rays_before = 0;
   const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
   RadiosityField field = kept_or_made<RadiosityField>("exchange-again", [&] {
     PreparedRadiosity& prepared = prepared_of(light);
     stages.start(method.name);
     StageWatch watch(session);
     made = true;
+    rays_before = prepared.rays();
     return prepared.solve({entering, {}}, tolerance, watch.report());
   });
   if (light.entered.empty()) light.entered = light.direct;
@@ -368,7 +372,7 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   light.solution.applies += field.solution.applies;
   if (field.solution.end != SolveEnd::converged) light.solution.end = field.solution.end;
   if (!made) return std::move(field.irradiance);
-  light.rays = std::max(light.rays, light.prepared->rays());
+  light.rays += light.prepared->rays() - rays_before;
   stages.finish(request.points.size, "points");
   report_solution(light, field.solution);
   return std::move(field.irradiance);

@@ -59,7 +59,7 @@ void count(double is, double expected, Found& found) {
   found.mean += is;
   // Not std::max, which forgets what is no number.
   const double error = std::fabs(is - expected) / expected;
-  if (!(error <= found.error)) found.error = error;
+  if (!std::isnan(found.error) && !(error <= found.error)) found.error = error;
 }
 
 /// A case: a scene, the radiosity that its points have, and a camera that sees some of them in small pixels.

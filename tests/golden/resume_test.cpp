@@ -136,6 +136,25 @@ TEST_CASE("what is damaged, of another scene, or cannot be kept is told, and the
   CHECK(work.picture() != undisturbed);
   check_tidy(work);
 
+  // Twice the power is the same light in other units, and another picture.
+  for (const char* power : {"[180,180,180]", "[45,45,45]"}) {
+    const std::string changed = std::string(" --set light.0.power_w=") + power;
+    REQUIRE(run_program(work.command + changed).code == 0);
+    const auto right = work.picture();
+    work.kill_after(5);
+    REQUIRE(run_program(work.command + " --resume" + changed).code == 0);
+    CHECK(work.picture() == right);
+  }
+
+  // What another run has kept stays where this one keeps nothing.
+  REQUIRE(work.kill_after(2));
+  const Run short_run =
+      run_program("render " + work.folder.write("other.toml", small_scene()) + " --resume -o " + work.file);
+  CHECK(short_run.code == 0);
+  CHECK(work.kept() >= 2);
+  REQUIRE(run_program(work.command + " --resume").code == 0);
+  CHECK(work.picture() == undisturbed);
+
   work.folder.write("x.exr.checkpoint", "a file stands where the folder should");
   const Run without = run_program(work.command);
   CHECK(without.code == 0);
