@@ -72,8 +72,9 @@ ExitCode run_bake(const BakeOptions& options) {
   api::LightOptions solving{false, false};
   if (options.passes) solving.pass_file = options.output;
   solving.pass_content = content;
-  const std::unique_ptr<Checkpoint> checkpoint = open_checkpoint(
-      options, options.output, checkpoint_key(scene, prepared, options.passes ? "bake --passes" : "bake", nullptr));
+  const std::unique_ptr<Checkpoint> checkpoint = open_checkpoint(options, options.output, [&] {
+    return checkpoint_key(scene, prepared, options.passes ? "bake --passes" : "bake", nullptr);
+  });
   const CheckpointScope kept(checkpoint.get());
   const api::Light light =
       resumable(checkpoint.get(), options.output, [&] { return api::Light(prepared, solving, run.control()); });

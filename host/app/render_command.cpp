@@ -288,8 +288,8 @@ ExitCode run_render(const RenderOptions& options) {
   std::unique_ptr<Checkpoint> checkpoint;
   if (options.resume) remove_unfinished(output.png_path());
   if (!has_open_goal(options))
-    checkpoint =
-        open_checkpoint(options, output.exr_path(), checkpoint_key(scene, prepared, options.integrator, &film));
+    checkpoint = open_checkpoint(options, output.exr_path(),
+                                 [&] { return checkpoint_key(scene, prepared, options.integrator, &film); });
   const PictureRun picture{context,       prepared,        film, options.integrator == "path", pixels,
                            run.control(), checkpoint.get()};
   const MadePictureFiles made = resumable(checkpoint.get(), output.exr_path(), [&] {

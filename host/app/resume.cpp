@@ -9,7 +9,7 @@ std::string checkpoint_folder(const std::string& output) {
 }
 
 std::unique_ptr<Checkpoint> open_checkpoint(const LightOptions& options, const std::string& output,
-                                            const std::string& key) {
+                                            std::function<std::string()> key) {
   const std::string folder = checkpoint_folder(output);
   const bool is_there = Checkpoint::is_in(folder);
   if (is_there && !options.resume)
@@ -17,7 +17,8 @@ std::unique_ptr<Checkpoint> open_checkpoint(const LightOptions& options, const s
                  folder);
   if (options.resume && !is_there) spdlog::info("--resume: nothing is kept in {}: all is done", folder);
   if (options.resume) remove_unfinished(output);
-  return std::make_unique<Checkpoint>(CheckpointOptions{folder, key, options.checkpoint_seconds, options.resume,
+  return std::make_unique<Checkpoint>(CheckpointOptions{folder, std::move(key), options.checkpoint_seconds,
+                                                        options.resume,
                                                         [](const std::string& text) { spdlog::warn("{}", text); }});
 }
 

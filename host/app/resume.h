@@ -9,9 +9,10 @@ namespace pointgi {
 /// OUT.exr.checkpoint.
 std::string checkpoint_folder(const std::string& output);
 
-/// `key`: of checkpoint_key(). The log hears what is there of an earlier run, and whether it is used.
+/// `key`: checkpoint_key(), asked when something is kept or found; what it refers to must live as long. The log hears
+/// what is there of an earlier run, and whether it is used.
 std::unique_ptr<Checkpoint> open_checkpoint(const LightOptions& options, const std::string& output,
-                                            const std::string& key);
+                                            std::function<std::string()> key);
 
 /// At the end of a run: of one that was interrupted what waits is kept, and the log tells how to go on; else the
 /// folder goes. `checkpoint`: may be null.

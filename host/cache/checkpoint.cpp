@@ -87,12 +87,12 @@ std::optional<std::string> Checkpoint::find(const std::string& name) {
   // Before anything is allocated: sizes of a damaged file may be any number.
   const std::uint64_t rest = size - sizeof header;
   if (header.key_size > rest || header.size != rest - header.key_size) return refused("is cut short or too long");
-  std::string key(header.key_size, '\0'), bytes(header.size, '\0');
-  if (!file.read(key.data(), static_cast<std::streamsize>(key.size())) ||
+  std::string found_key(header.key_size, '\0'), bytes(header.size, '\0');
+  if (!file.read(found_key.data(), static_cast<std::streamsize>(found_key.size())) ||
       !file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
     return refused("cannot be read");
-  if (hash_of(key, bytes) != header.hash) return refused("is damaged");
-  if (key != options_.key) {
+  if (hash_of(found_key, bytes) != header.hash) return refused("is damaged");
+  if (found_key != key()) {
     if (!foreign_) refused("is of another scene, other settings, or another device, as may be other pieces beside it");
     foreign_ = true;
     return std::nullopt;
@@ -100,6 +100,11 @@ std::optional<std::string> Checkpoint::find(const std::string& name) {
   ++found_;
   begun_ = true; // what lies there is this run's own
   return bytes;
+}
+
+const std::string& Checkpoint::key() {
+  if (!key_) key_ = options_.key();
+  return *key_;
 }
 
 void Checkpoint::clear() {
@@ -117,12 +122,12 @@ void Checkpoint::write_locked(const std::string& name, const std::string& bytes)
   begun_ = true;
   std::error_code ignored;
   fs::create_directories(options_.folder, ignored); // or the file says that it is not there
-  Header header{{}, version, byte_order, options_.key.size(), bytes.size(), hash_of(options_.key, bytes)};
+  Header header{{}, version, byte_order, key().size(), bytes.size(), hash_of(key(), bytes)};
   std::memcpy(header.magic_word, magic, sizeof magic);
   try {
     AtomicFile file(file_of(name));
     file.write(&header, sizeof header);
-    file.write(options_.key.data(), options_.key.size());
+    file.write(key().data(), key().size());
     file.write(bytes.data(), bytes.size());
     kept_ = true;
     file.commit_unsynced(); // the hash tells what a power cut has left of it

@@ -13,10 +13,10 @@
 namespace pointgi {
 
 struct CheckpointOptions {
-  std::string folder;                           ///< made when the first work is kept
-  std::string key;                              ///< everything that the work depends on, as text
-  double least_seconds = 10.0;                  ///< work that took less is not kept; 0: all is
-  bool resumes = false;                         ///< what an earlier run of the same key has kept is used
+  std::string folder;               ///< made when the first work is kept
+  std::function<std::string()> key; ///< everything that the work depends on, as text; asked once, before the first file
+  double least_seconds = 10.0;      ///< work that took less is not kept; 0: all is
+  bool resumes = false;             ///< what an earlier run of the same key has kept is used
   std::function<void(const std::string&)> warn; ///< from any thread; may be empty
 };
 
@@ -57,6 +57,7 @@ public:
 
 private:
   std::string file_of(const std::string& name) const;
+  const std::string& key();
   void clear();
   void write_locked(const std::string& name, const std::string& bytes);
   void flush_locked();
@@ -64,6 +65,7 @@ private:
 
   CheckpointOptions options_;
   std::mutex mutex_;
+  std::optional<std::string> key_; ///< once it was asked for: a large scene takes seconds to tell
   std::map<std::string, unsigned> numbers_;
   std::map<std::string, std::string> waiting_;
   std::size_t waiting_bytes_ = 0;

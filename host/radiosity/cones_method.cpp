@@ -53,6 +53,9 @@ std::unique_ptr<PreparedRadiosity> prepare(Session& session, const ExchangeScene
 } // namespace
 
 extern const RadiosityMethod cones_method{
-    "cones", "radiosity.method = \"cones\" looks through voxels, not along rays between points", true, prepare};
+    "cones", "radiosity.method = \"cones\" looks through voxels, not along rays between points",
+    true,    prepare,
+    false,   false,
+    true};
 
 } // namespace pointgi

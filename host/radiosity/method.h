@@ -81,6 +81,7 @@ struct RadiosityMethod {
                                                 const WorkReport& report);
   bool has_passes = false; ///< the light is there a bounce at a time, and can be looked at after each
   bool tells_sky = false;  ///< PreparedRadiosity::sky() is known
+  bool has_cones = false;  ///< pixels may gather by PreparedRadiosity::cones_of(), with radiosity.at = "pixels"
 };
 
 /// All methods; the first is the one that needs a V-map.

@@ -61,9 +61,8 @@ void GrowingFilm::grow(pg_uint samples, const std::function<void(double)>& progr
     samples_[b] = samples;
     seconds_[b].first += totals_.eye_seconds - eye_before;
     seconds_[b].second += totals_.device_seconds - all_before;
-    if (is_kept_)
-      keep_band(current_checkpoint(), "film-", first_row,
-                BandSums{bands_[b], samples, seconds_[b].first, seconds_[b].second});
+    if (Checkpoint* const checkpoint = is_kept_ ? current_checkpoint() : nullptr)
+      keep_band(checkpoint, "film-", first_row, BandSums{bands_[b], samples, seconds_[b].first, seconds_[b].second});
   }
 }
 

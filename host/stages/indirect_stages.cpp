@@ -380,8 +380,7 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
 
 void finish_exchange(const IndirectRequest& request, IndirectLight& light) {
   const RadiositySettings& settings = request.scene.radiosity;
-  if (light.prepare && light.prepared == nullptr && light.method->name == std::string("cones") &&
-      settings.at == "pixels")
+  if (light.prepare && light.prepared == nullptr && light.method->has_cones && settings.at == "pixels")
     prepared_of(light);
   light.prepare = {};
   if (light.prepared != nullptr) {

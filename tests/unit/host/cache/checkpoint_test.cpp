@@ -33,7 +33,7 @@ std::string packed(const Numbers& numbers) {
 CheckpointOptions in(const TemporaryFolder& folder, bool resumes, std::vector<std::string>* warnings = nullptr) {
   CheckpointOptions options;
   options.folder = folder.file("x.checkpoint");
-  options.key = "scene 1";
+  options.key = [] { return std::string("scene 1"); };
   options.least_seconds = 0.0;
   options.resumes = resumes;
   if (warnings != nullptr) options.warn = [=](const std::string& text) { warnings->push_back(text); };
@@ -132,7 +132,7 @@ TEST_CASE("checkpoint: a damaged piece, and one of another key, are told and not
   }
   std::ofstream(file, std::ios::binary) << whole;
   CheckpointOptions other = in(folder, true);
-  other.key = "scene 2";
+  other.key = [] { return std::string("scene 2"); };
   CHECK_FALSE(Checkpoint(other).find("rows-0").has_value());
   CHECK(Checkpoint(in(folder, true)).find("rows-0").has_value());
 }
