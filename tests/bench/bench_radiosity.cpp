@@ -1,11 +1,13 @@
-/// Radiosity by V-map and fast multipole method: how it grows with the points of one room, and against the direct
-/// solver, which traces a ray a pair. Both sides of a comparison run in turn, A B A B, and the median of the pairs
+/// Radiosity by V-map and fast multipole method: how it grows with the points of one room, beside directions, which a
+/// scene of its size is solved with unless it asks for another method; and against the direct solver, which traces a
+/// ray a pair. Both sides of a comparison run in turn, A B A B, and the median of the pairs
 /// counts. bench_radiosity --help
 #include "fmm/ref/direct_sum.h"
 #include "fmm/solve/solve.h"
 #include "host/passes/visibility.h"
 #include "host/radiosity/direct.h"
 #include "host/radiosity/fmm.h"
+#include "host/radiosity/method.h"
 #include "host/scene/scene.h"
 #include "octree/vmap/make_links.h"
 #include "tests/support/exchange.h"
@@ -125,6 +127,31 @@ FmmRun run_fmm(Session& session, const test::LitRoom& room, const Settings& sett
   return run;
 }
 
+struct DirectionsRun {
+  Field field; ///< radiosity by all light, as the operators' is
+  std::uint64_t rays = 0;
+  Seconds all;
+};
+
+/// As a scene is solved that says no more than the method.
+DirectionsRun run_directions(Session& session, const test::LitRoom& room) {
+  DirectionsRun run;
+  Stopwatch watch(session);
+  TraversalVariant variant = room.variant;
+  variant.grouping = RayGrouping::packet; // the default of devices that have it
+  if (!why_not(variant, session.info()).empty()) variant = room.variant;
+  const RadiositySettings settings;
+  const auto prepared = radiosity_method("directions")
+                            ->prepare(session, {room.pools, variant, room.points, {}, 1.0, 1}, settings, std::nullopt,
+                                      [](const std::string&) {});
+  const RadiosityField field = prepared->solve({room.direct, {}}, settings.tolerance, [](const std::string&) {});
+  run.all = watch.lap();
+  run.rays = prepared->rays();
+  run.field.from_surfaces.assign(field.irradiance.begin(), field.irradiance.end());
+  run.field.radiosity = room.radiosity(field.irradiance);
+  return run;
+}
+
 struct DirectRun {
   Field field;
   std::uint64_t rays = 0;
@@ -214,6 +241,11 @@ void measure_growth(Session& session, const std::vector<std::size_t>& sizes, con
     const FmmRun run = run_fmm(session, room, settings);
     print_fmm(room.points.size(), run);
     std::printf(" | %6.2f %%\n", 100.0 * error_at(session, room, run.field, receivers));
+    std::fflush(stdout);
+    const DirectionsRun directions = run_directions(session, room);
+    std::printf("%8s | %8s %7.2f %7s | %36.2f | %7.2f | %6.2f %%\n", "", "directions", million(directions.rays), "",
+                directions.all.wall, directions.all.device,
+                100.0 * error_at(session, room, directions.field, receivers));
     std::fflush(stdout);
     points.push_back(static_cast<double>(room.points.size()));
     wall.push_back(run.all().wall);

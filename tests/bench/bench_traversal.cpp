@@ -65,6 +65,11 @@ struct Tracer {
     session.launch(traced, LaunchShape::line(rays.size, variant.group.size()), pools.nodes, pools.leaves, pools.points,
                    rays, answers, static_cast<cl_uint>(rays.size), 0.0f);
   }
+  std::vector<RayAnswer> nearest(const std::vector<RayQuery>& rays) {
+    const auto answers = session.allocate<RayAnswer>(rays.size());
+    closest(session.upload(rays), answers);
+    return session.download(answers, rays.size());
+  }
   /// Rays of one pixel together.
   void packets(const Buffer<RayPacketQuery>& rays, const Buffer<RayPacketAnswer>& answers) {
     cl::Kernel traced = kernel("trace_packets");
@@ -153,6 +158,84 @@ std::array<Pairs, 2> measure_incoherent(Tracer& tracer, const EmbreePeer& peer, 
   return result;
 }
 
+/// A lamp that lights from above and from the side, as seen from the middle of the cube: centre, a unit frame across
+/// the way from there, and radius, root cube units.
+struct Lamp {
+  Eigen::Vector3f centre, u, v;
+  float radius;
+};
+
+Lamp lamp_over(const std::vector<Splat>& splats) {
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(1.0f), high = Eigen::Vector3f::Zero();
+  for (const Splat& s : splats)
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], s.position[a]);
+      high[a] = std::max(high[a], s.position[a]);
+    }
+  const Eigen::Vector3f away = Eigen::Vector3f(0.4f, -0.3f, 0.87f).normalized();
+  const float size = (high - low).norm();
+  Lamp lamp;
+  lamp.centre = 0.5f * (low + high) + 0.6f * size * away;
+  lamp.u = away.unitOrthogonal();
+  lamp.v = away.cross(lamp.u);
+  lamp.radius = 0.06f * size;
+  return lamp;
+}
+
+/// Shadow rays of the eye rays that hit: each from its hit to a stratum of its own of the lamp, 32 a pixel and 128 a
+/// packet of 2 x 2 pixels, of which those are taken in which all rays hit and the surface faces the lamp.
+std::vector<RayQuery> shadow_rays(const std::vector<RayQuery>& eye, const std::vector<RayAnswer>& answers,
+                                  View<Splat> points, const Lamp& lamp) {
+  std::vector<RayQuery> rays;
+  for (std::size_t first = 0; first + PACKET_RAYS <= eye.size(); first += PACKET_RAYS) {
+    std::vector<RayQuery> packet;
+    for (std::size_t k = first; k < first + PACKET_RAYS && answers[k].splat != NO_SPLAT; ++k) {
+      const Splat& s = points[answers[k].splat];
+      const float column = (static_cast<float>(k % GRID_X) + 0.5f) / GRID_X,
+                  row = (static_cast<float>(k / GRID_X % GRID_Y) + 0.5f) / GRID_Y;
+      const float r = lamp.radius * std::sqrt(row), angle = 6.2831853f * column;
+      const Eigen::Vector3f normal(s.normal[0], s.normal[1], s.normal[2]);
+      const Eigen::Vector3f target = lamp.centre + r * (std::cos(angle) * lamp.u + std::sin(angle) * lamp.v);
+      RayQuery ray{};
+      Eigen::Vector3f origin;
+      for (int a = 0; a < 3; ++a)
+        origin[a] = eye[k].origin[a] + answers[k].t * eye[k].direction[a] + 0.5f * s.radius * normal[a];
+      const Eigen::Vector3f way = target - origin;
+      if (way.dot(normal) <= 0.0f) break;
+      const Eigen::Vector3f d = way.normalized();
+      std::copy_n(origin.data(), 3, ray.origin);
+      std::copy_n(d.data(), 3, ray.direction);
+      ray.t_min = s.radius; // past the splat's own surface
+      ray.t_max = way.norm();
+      packet.push_back(ray);
+    }
+    if (packet.size() == PACKET_RAYS) rays.insert(rays.end(), packet.begin(), packet.end());
+  }
+  return rays;
+}
+
+/// Whether anything is hit, ours one ray at a time as the renderer asks; Embree's best of its three ways.
+Pairs measure_shadow(Tracer& tracer, const EmbreePeer& peer, const std::vector<RayQuery>& rays, int pairs,
+                     double& blocked_share) {
+  const auto on_device = tracer.session.upload(rays);
+  const auto blocked = tracer.session.allocate<cl_uint>(rays.size());
+  Pairs result;
+  std::size_t theirs = 0;
+  for (int k = 0; k < pairs; ++k) {
+    result.ours.push_back(warm_seconds_of([&] { tracer.any(on_device, blocked); }));
+    result.theirs.push_back(std::min({warm_seconds_of([&] { theirs = peer.any_packet16(rays); }),
+                                      warm_seconds_of([&] { theirs = peer.any_stream32(rays); }),
+                                      warm_seconds_of([&] { theirs = peer.any_single(rays); })}));
+  }
+  const auto answers = tracer.session.download(blocked, rays.size());
+  const auto ours = static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1u));
+  // Edges of discs are known to rounding.
+  if (std::max(ours, theirs) - std::min(ours, theirs) > rays.size() / 10'000)
+    std::printf("  warning: %zu of %zu shadow rays are blocked, by Embree %zu\n", ours, rays.size(), theirs);
+  blocked_share = static_cast<double>(ours) / static_cast<double>(rays.size());
+  return result;
+}
+
 /// What borders cost: the same rays against discs that end and against whole ones, eye rays and bounced ones.
 nlohmann::json measure_borders(Tracer& ending, Tracer& whole, const std::vector<RayQuery>& coherent,
                                const std::vector<RayQuery>& bounced, int pairs) {
@@ -203,6 +286,10 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
   double hit_share = 0.0;
   const Pairs coherent_pairs = measure_coherent(tracer, peer, coherent, pairs, hit_share);
   const auto [closest, any] = measure_incoherent(tracer, peer, bounced, pairs);
+  const std::vector<RayQuery> shadow =
+      shadow_rays(coherent, tracer.nearest(coherent), points_of(pools), lamp_over(splats));
+  double blocked_share = 0.0;
+  const Pairs shadow_pairs = measure_shadow(tracer, peer, shadow, pairs, blocked_share);
   const OctreeSummary octree = summary_of(pools);
   const double bytes = static_cast<double>(octree.bytes) / static_cast<double>(splats.size());
   std::printf("%s, %zu splats, form %s, %.0f bytes a splat; %.0f %% of the eye rays hit\n", name.c_str(), splats.size(),
@@ -215,6 +302,9 @@ nlohmann::json measure(Session& session, const std::string& name, const WorldSpl
   row["coherent"] = report_rays("coherent", coherent_pairs, coherent.size());
   row["incoherent"] = report_rays("incoherent", closest, bounced.size());
   row["any-hit"] = report_rays("any-hit", any, bounced.size());
+  row["shadow"] = report_rays("shadow", shadow_pairs, shadow.size());
+  row["shadow"]["blocked_share"] = blocked_share;
+  std::printf("  %.0f %% of %zu shadow rays are blocked\n", 100.0 * blocked_share, shadow.size());
   if (!clips.empty()) {
     TraversalVariant clipped = variant;
     clipped.clips = true;

@@ -117,14 +117,58 @@ void EmbreePeer::closest_packet16(const std::vector<RayPacketQuery>& packets,
     }
 }
 
-void EmbreePeer::any_single(const std::vector<RayQuery>& rays) const {
-#pragma omp parallel for schedule(dynamic, 1024)
+// Embree says that a ray is blocked by a far end of -infinity.
+std::size_t EmbreePeer::any_single(const std::vector<RayQuery>& rays) const {
+  std::size_t blocked = 0;
+#pragma omp parallel for schedule(dynamic, 1024) reduction(+ : blocked)
   for (std::size_t i = 0; i < rays.size(); ++i) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray = embree_ray(rays[i]);
     rtcOccluded1(scene_, &context, &ray);
+    blocked += ray.tfar < 0.0f;
   }
+  return blocked;
+}
+
+std::size_t EmbreePeer::any_stream32(const std::vector<RayQuery>& rays) const {
+  std::size_t blocked = 0;
+#pragma omp parallel for schedule(dynamic, 32) reduction(+ : blocked)
+  for (std::size_t stream = 0; stream < rays.size() / 32; ++stream) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRay all[32];
+    for (std::size_t k = 0; k < 32; ++k)
+      all[k] = embree_ray(rays[32 * stream + k]);
+    rtcOccluded1M(scene_, &context, all, 32, sizeof(RTCRay));
+    for (const RTCRay& ray : all)
+      blocked += ray.tfar < 0.0f;
+  }
+  return blocked;
+}
+
+std::size_t EmbreePeer::any_packet16(const std::vector<RayQuery>& rays) const {
+  std::size_t blocked = 0;
+#pragma omp parallel for schedule(dynamic, 64) reduction(+ : blocked)
+  for (std::size_t packet = 0; packet < rays.size() / 16; ++packet) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRay16 all{};
+    alignas(64) int valid[16];
+    for (std::size_t k = 0; k < 16; ++k) {
+      const RayQuery& q = rays[16 * packet + k];
+      valid[k] = -1;
+      all.org_x[k] = q.origin[0], all.org_y[k] = q.origin[1], all.org_z[k] = q.origin[2];
+      all.dir_x[k] = q.direction[0], all.dir_y[k] = q.direction[1], all.dir_z[k] = q.direction[2];
+      all.tnear[k] = q.t_min, all.tfar[k] = q.t_max, all.mask[k] = ~0u;
+    }
+    rtcOccluded16(valid, scene_, &context, &all);
+    for (const float far : all.tfar)
+      blocked += far < 0.0f;
+  }
+  return blocked;
 }
 
 } // namespace pointgi::bench

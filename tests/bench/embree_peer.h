@@ -2,6 +2,7 @@
 /// Embree over the same splats: the peer of bench_traversal. Threads as OpenMP has them.
 #include "octree/splat.h"
 #include "shared/traversal_types.h"
+#include <cstddef>
 #include <embree3/rtcore.h>
 #include <vector>
 
@@ -19,8 +20,11 @@ public:
   void closest_single(const std::vector<RayQuery>& rays, std::vector<RayAnswer>& answers) const;
   void closest_stream32(const std::vector<RayQuery>& rays, std::vector<RayAnswer>& answers) const;
   void closest_packet16(const std::vector<RayPacketQuery>& packets, std::vector<RayPacketAnswer>& answers) const;
-  /// Learns of all rays whether they hit anything.
-  void any_single(const std::vector<RayQuery>& rays) const;
+  /// Learns of all rays whether they hit anything; returns how many do. In streams and packets a tail of fewer rays is
+  /// left out.
+  std::size_t any_single(const std::vector<RayQuery>& rays) const;
+  std::size_t any_stream32(const std::vector<RayQuery>& rays) const;
+  std::size_t any_packet16(const std::vector<RayQuery>& rays) const;
 
 private:
   RTCDevice device_ = nullptr;
