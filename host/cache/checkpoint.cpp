@@ -1,8 +1,12 @@
 #include "host/cache/checkpoint.h"
 #include "host/atomic_file.h"
 #include "host/cache/binary_cache.h"
+#include <cerrno>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <sys/file.h>
+#include <unistd.h>
 
 namespace pointgi {
 
@@ -11,9 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char magic[8] = {'p', 'g', 'i', 'k', 'e', 'p', 't', '\n'};
-constexpr std::uint32_t version = 1;              ///< to be raised with every change of what is kept
+constexpr std::uint32_t version = 2;              ///< to be raised with every change of what is kept
 constexpr std::uint32_t byte_order = 0x01020304u; ///< as this machine writes it
 constexpr const char* extension = ".kept";
+constexpr const char* lock_name = "in-use"; ///< locked as long as its run lives
 constexpr std::size_t most_waiting_bytes = 64u << 20;
 
 /// File: header, key, bytes.
@@ -47,6 +52,25 @@ bool is_of_checkpoint(const fs::path& file) {
 
 Checkpoint::Checkpoint(CheckpointOptions options) : options_(std::move(options)) {}
 
+Checkpoint::~Checkpoint() {
+  if (lock_ >= 0) close(lock_);
+}
+
+bool Checkpoint::owns_folder() {
+  if (lock_ >= 0) return true;
+  if (failed_) return false;
+  const int file = open((fs::path(options_.folder) / lock_name).c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  if (file < 0) return true;                                         // what is written next tells why
+  if (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) { // not all file systems have locks
+    lock_ = file;
+    return true;
+  }
+  close(file);
+  failed_ = true;
+  warn(options_.folder + ": another run that writes the same output is at work" + given_up);
+  return false;
+}
+
 bool Checkpoint::is_in(const std::string& folder, const std::string& name) {
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed))
@@ -72,7 +96,7 @@ std::optional<std::string> Checkpoint::find(const std::string& name) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::string path = file_of(name);
   std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return std::nullopt;
+  if (!fs::is_regular_file(path, failed) || !owns_folder()) return std::nullopt;
   const auto refused = [&](const char* what) {
     warn(path + ": " + what + "; it is not used, and what it should hold is computed again");
     return std::nullopt;
@@ -118,10 +142,11 @@ void Checkpoint::clear() {
 
 void Checkpoint::write_locked(const std::string& name, const std::string& bytes) {
   if (failed_) return;
-  if (!begun_) clear();
-  begun_ = true;
   std::error_code ignored;
   fs::create_directories(options_.folder, ignored); // or the file says that it is not there
+  if (!owns_folder()) return;
+  if (!begun_) clear();
+  begun_ = true;
   Header header{{}, version, byte_order, key().size(), bytes.size(), hash_of(key(), bytes)};
   std::memcpy(header.magic_word, magic, sizeof magic);
   try {
@@ -174,9 +199,13 @@ void Checkpoint::remove() {
   const std::lock_guard<std::mutex> lock(mutex_);
   waiting_.clear();
   waiting_bytes_ = 0;
-  if (begun_) clear();
   std::error_code ignored;
-  if (begun_) fs::remove(options_.folder, ignored); // stays where others have put something into it
+  if (begun_) clear();
+  // The lock's file last: until then no other run takes the folder for its own.
+  if (lock_ >= 0 && (begun_ || !is_in(options_.folder))) {
+    fs::remove(fs::path(options_.folder) / lock_name, ignored);
+    fs::remove(options_.folder, ignored); // stays where others have put something into it
+  }
 }
 
 CheckpointScope::CheckpointScope(Checkpoint* checkpoint) : outer_(current) {

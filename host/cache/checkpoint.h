@@ -21,11 +21,12 @@ struct CheckpointOptions {
 };
 
 /// A file for each piece of work, whole or absent. Where the folder cannot be written the run goes on without it, with
-/// one warning. Without `resumes`, what the folder holds stays until the first work is kept, which then replaces it.
-/// Pieces may be kept and found on different threads.
+/// one warning; likewise where a run that still lives keeps its work there. Without `resumes`, what the folder holds
+/// stays until the first work is kept, which then replaces it. Pieces may be kept and found on different threads.
 class Checkpoint {
 public:
   explicit Checkpoint(CheckpointOptions options);
+  ~Checkpoint();
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
 
@@ -57,6 +58,8 @@ public:
 
 private:
   std::string file_of(const std::string& name) const;
+  /// False, which is told once, where another run is at work in the folder.
+  bool owns_folder();
   const std::string& key();
   void clear();
   void write_locked(const std::string& name, const std::string& bytes);
@@ -71,6 +74,7 @@ private:
   std::size_t waiting_bytes_ = 0;
   Clock::time_point kept_at_ = Clock::now();
   std::size_t found_ = 0;
+  int lock_ = -1;        ///< file descriptor: as long as it is open, the folder is this run's
   bool begun_ = false;   ///< the folder holds nothing of other runs
   bool kept_ = false;    ///< something, in this run
   bool failed_ = false;  ///< and is left alone from then on

@@ -24,6 +24,11 @@ public:
     put(values.data(), values.size() * sizeof(T));
     return *this;
   }
+  Packer& operator<<(const std::string& text) {
+    *this << static_cast<std::uint64_t>(text.size());
+    put(text.data(), text.size());
+    return *this;
+  }
   template <typename T>
   Packer& operator<<(const std::vector<std::vector<T>>& lists) {
     *this << static_cast<std::uint64_t>(lists.size());
@@ -64,6 +69,13 @@ public:
     get(values.data(), size * sizeof(T));
     return *this;
   }
+  Unpacker& operator>>(std::string& text) {
+    const std::uint64_t size = size_of_list(1);
+    if (!good_) return *this;
+    text.resize(size);
+    get(text.data(), size);
+    return *this;
+  }
   template <typename T>
   Unpacker& operator>>(std::vector<std::vector<T>>& lists) {
     const std::uint64_t size = size_of_list(sizeof(std::uint64_t));
@@ -74,6 +86,8 @@ public:
     return *this;
   }
 
+  /// Nothing was missing yet.
+  bool is_good() const { return good_; }
   /// Everything was there, and nothing is left.
   bool is_whole() const { return good_ && at_ == bytes_.size(); }
 

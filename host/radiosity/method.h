@@ -28,9 +28,9 @@ struct RadiosityField {
 
 /// A whole number that --stats writes under `section`.
 struct MethodStatistic {
-  const char* section; ///< "radiosity" or "vmap"
-  const char* name;
-  std::uint64_t value;
+  std::string section; ///< "radiosity" or "vmap"
+  std::string name;
+  std::uint64_t value = 0;
 };
 
 /// Told after each pass of a method that has passes, from 1 on: the irradiance so far, RadiosityField::irradiance.

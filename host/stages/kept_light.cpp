@@ -32,6 +32,9 @@ void pack(Packer& to, const IndirectLight& light) {
       static_cast<std::uint32_t>(std::find(methods.begin(), methods.end(), light.method) - methods.begin());
   to << method << light.from_surfaces << light.direct << light.sky << light.rays;
   pack_solution(to, light.solution);
+  to << static_cast<std::uint64_t>(light.statistics.size());
+  for (const MethodStatistic& statistic : light.statistics)
+    to << statistic.section << statistic.name << statistic.value;
 }
 
 void unpack(Unpacker& from, IndirectLight& light) {
@@ -39,6 +42,12 @@ void unpack(Unpacker& from, IndirectLight& light) {
   auto method = static_cast<std::uint32_t>(methods.size());
   from >> method >> light.from_surfaces >> light.direct >> light.sky >> light.rays;
   unpack_solution(from, light.solution);
+  std::uint64_t statistics = 0;
+  from >> statistics;
+  for (std::uint64_t i = 0; i < statistics && from.is_good(); ++i) {
+    MethodStatistic& statistic = light.statistics.emplace_back();
+    from >> statistic.section >> statistic.name >> statistic.value;
+  }
   light.method = method < methods.size() ? methods[method] : nullptr;
 }
 

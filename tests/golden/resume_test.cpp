@@ -2,6 +2,7 @@
 #include "host/image/picture_writer.h"
 #include "tests/support/killed_run.h"
 #include "tests/support/run_program.h"
+#include "tests/support/stats_file.h"
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <random>
@@ -54,18 +55,23 @@ void check_tidy(const Work& work) {
 TEST_CASE("a render that was killed after any piece of work goes on to the same bits", "[resume][long]") {
   for (const char* options : {"", "--progressive --spp 96"}) {
     const Work work("render", scene_of_all_stages(), options);
-    REQUIRE(run_program(work.command).code == 0);
+    const std::string stats = work.folder.file("stats.json");
+    REQUIRE(run_program(work.command + " --stats " + stats).code == 0);
     const auto undisturbed = work.picture();
+    const nlohmann::json said = json_of(stats);
     check_tidy(work);
     bool used = false;
     for (const std::size_t pieces : {1, 2, 3, 4, 6}) {
       CAPTURE(options, pieces);
       std::filesystem::remove(work.file);
       const bool killed = work.kill_after(pieces);
-      const Run resumed = run_program(work.command + " --resume");
+      const Run resumed = run_program(work.command + " --resume --stats " + stats);
       INFO(resumed.err);
       REQUIRE(resumed.code == 0);
       CHECK(work.picture() == undisturbed);
+      const nlohmann::json again = json_of(stats);
+      for (const char* section : {"radiosity", "vmap", "photons"})
+        CHECK(again[section] == said[section]);
       check_tidy(work);
       used = used || (killed && resumed.err.find("an earlier run has kept its light") != std::string::npos);
     }

@@ -12,17 +12,18 @@ struct Numbers {
   std::vector<float> values;
   std::vector<std::vector<int>> lists;
   double one = 0.0;
+  std::string word;
 };
 
 void pack(Packer& to, const Numbers& n) {
-  to << n.values << n.lists << n.one;
+  to << n.values << n.lists << n.one << n.word;
 }
 
 void unpack(Unpacker& from, Numbers& n) {
-  from >> n.values >> n.lists >> n.one;
+  from >> n.values >> n.lists >> n.one >> n.word;
 }
 
-const Numbers some{{1.5f, -2.0f}, {{1}, {}, {2, 3}}, 0.25};
+const Numbers some{{1.5f, -2.0f}, {{1}, {}, {2, 3}}, 0.25, "three"};
 
 std::string packed(const Numbers& numbers) {
   Packer to;
@@ -54,6 +55,7 @@ TEST_CASE("checkpoint: values come back as they were packed, and short bytes are
     CHECK(found.values == some.values);
     CHECK(found.lists == some.lists);
     CHECK(found.one == some.one);
+    CHECK(found.word == some.word);
   }
   const std::string longer = bytes + "x";
   Numbers found;
@@ -100,15 +102,17 @@ TEST_CASE("checkpoint: what took too little time is not kept, and of what waits 
   const TemporaryFolder folder;
   CheckpointOptions patient = in(folder, false);
   patient.least_seconds = 1000.0;
-  Checkpoint checkpoint(patient);
-  const CheckpointScope scope(&checkpoint);
-  kept_or_made<Numbers>("light", [] { return some; });
-  checkpoint.keep_soon("rows-0", "first");
-  checkpoint.keep_soon("rows-0", "second");
-  checkpoint.flush(); // a run that is ended so soon leaves nothing
-  CHECK_FALSE(Checkpoint::is_in(patient.folder));
-  checkpoint.keep("shafts-1", "a long stage");
-  checkpoint.flush();
+  {
+    Checkpoint checkpoint(patient);
+    const CheckpointScope scope(&checkpoint);
+    kept_or_made<Numbers>("light", [] { return some; });
+    checkpoint.keep_soon("rows-0", "first");
+    checkpoint.keep_soon("rows-0", "second");
+    checkpoint.flush(); // a run that is ended so soon leaves nothing
+    CHECK_FALSE(Checkpoint::is_in(patient.folder));
+    checkpoint.keep("shafts-1", "a long stage");
+    checkpoint.flush();
+  }
   Checkpoint next(in(folder, true));
   CHECK(next.find("rows-0") == std::optional<std::string>("second"));
   CHECK_FALSE(next.find("light-1").has_value());
@@ -161,4 +165,21 @@ TEST_CASE("checkpoint: a folder that cannot be written is told once") {
   checkpoint.keep("b", "2");
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0], Contains("x.checkpoint") && Contains("goes on without"));
+}
+
+TEST_CASE(
+    "checkpoint: of two runs that write the same output the second keeps and finds nothing while the first lives") {
+  const TemporaryFolder folder;
+  std::vector<std::string> warnings;
+  {
+    Checkpoint first(in(folder, false));
+    first.keep("rows-0", "1");
+    Checkpoint second(in(folder, true, &warnings));
+    CHECK_FALSE(second.find("rows-0").has_value());
+    second.keep("rows-0", "2");
+    second.remove();
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Contains("x.checkpoint") && Contains("another run") && Contains("goes on without"));
+  }
+  CHECK(Checkpoint(in(folder, true)).find("rows-0") == std::optional<std::string>("1"));
 }
