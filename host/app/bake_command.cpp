@@ -76,22 +76,22 @@ ExitCode run_bake(const BakeOptions& options) {
     return checkpoint_key(scene, prepared, options.passes ? "bake --passes" : "bake", nullptr);
   });
   const CheckpointScope kept(checkpoint.get());
-  const api::Light light =
-      resumable(checkpoint.get(), options.output, [&] { return api::Light(prepared, solving, run.control()); });
-  stages.skip("photon", specular ? "a lit cloud holds no caustics" : "no specular material");
-  stages.skip("render", "a lit cloud is no picture: it has no camera");
-  if (options.sky) light.sky(run.control());
-  stages.start("bake");
-  if (is_las(options))
-    light.write_las(options.output, content, run.control());
-  else
-    light.write_ply(options.output, content, run.control());
-  stages.finish(prepared.size(), "points");
-  if (!options.stats_file.empty()) {
+  resumable(checkpoint.get(), options.output, [&] {
+    const api::Light light(prepared, solving, run.control());
+    stages.skip("photon", specular ? "a lit cloud holds no caustics" : "no specular material");
+    stages.skip("render", "a lit cloud is no picture: it has no camera");
+    if (options.sky) light.sky(run.control());
+    stages.start("bake");
+    if (is_las(options))
+      light.write_las(options.output, content, run.control());
+    else
+      light.write_ply(options.output, content, run.control());
+    stages.finish(prepared.size(), "points");
+    if (options.stats_file.empty()) return;
     Stats stats = stats_of(*light.parts());
     stats.command = "bake";
     write_stats(options.stats_file, stats, stages);
-  }
+  });
   close_checkpoint(checkpoint.get(), options.output, false);
   run.end_progress();
   std::printf("%s\n", options.output.c_str());

@@ -293,25 +293,26 @@ ExitCode run_render(const RenderOptions& options) {
   const PictureRun picture{context,       prepared,        film, options.integrator == "path", pixels,
                            run.control(), checkpoint.get()};
   const MadePictureFiles made = resumable(checkpoint.get(), output.exr_path(), [&] {
-    return growing
-               ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), before_light, output)
-               : make_picture_at_once(picture, output);
+    MadePictureFiles files =
+        growing ? make_growing_picture(picture, goal_of(options, setting, description.render.spp), before_light, output)
+                : make_picture_at_once(picture, output);
+    if (description.render.auto_exposure)
+      spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,
+                   output.png_light().exposure);
+    if (files.light && !files.interrupted)
+      warn_of_exposure(output.png_light(), prepared.parts()->scene, prepared.parts()->ready);
+    if (files.light)
+      write_reports(options, *files.light->parts(), files.totals, output.denoised());
+    else if (!options.stats_file.empty() || !options.trace_file.empty())
+      spdlog::warn("--stats and --trace are not written, as the light was not solved");
+    run.end_progress();
+    std::printf("%s\n%s\n", output.exr_path().c_str(), output.png_path().c_str());
+    if (output.denoised() && output.denoised()->failure) {
+      spdlog::warn("{} is written as it was rendered", output.exr_path());
+      throw Error(*output.denoised()->failure);
+    }
+    return files;
   });
-  if (description.render.auto_exposure)
-    spdlog::info("exposure chosen: {:.2f} stops (--exposure={:.2f} gives the same)", output.png_light().exposure,
-                 output.png_light().exposure);
-  if (made.light && !made.interrupted)
-    warn_of_exposure(output.png_light(), prepared.parts()->scene, prepared.parts()->ready);
-  if (made.light)
-    write_reports(options, *made.light->parts(), made.totals, output.denoised());
-  else if (!options.stats_file.empty() || !options.trace_file.empty())
-    spdlog::warn("--stats and --trace are not written, as the light was not solved");
-  run.end_progress();
-  std::printf("%s\n%s\n", output.exr_path().c_str(), output.png_path().c_str());
-  if (output.denoised() && output.denoised()->failure) {
-    spdlog::warn("{} is written as it was rendered", output.exr_path());
-    throw Error(*output.denoised()->failure);
-  }
   close_checkpoint(checkpoint.get(), output.exr_path(), made.interrupted);
   if (made.interrupted) {
     spdlog::warn("interrupted: {}", made.told);

@@ -37,15 +37,19 @@ private:
     case 2:
       bytes.resize(at);
       break;
-    case 3:
-      bytes.insert(at, std::string(1 + below(8), static_cast<char>(below(256))));
+    case 3: { // arguments of one call are drawn in the compiler's order
+      const auto character = static_cast<char>(below(256));
+      bytes.insert(at, std::string(1 + below(8), character));
       break;
+    }
     case 4:
       bytes.erase(at, 1 + below(16));
       break;
-    case 5:
-      bytes.insert(at, bytes.substr(below(bytes.size()), below(64)));
+    case 5: {
+      const std::size_t length = below(64);
+      bytes.insert(at, bytes.substr(below(bytes.size()), length));
       break;
+    }
     case 6:
       set_number(bytes, at);
       break;
