@@ -167,8 +167,7 @@ TEST_CASE("checkpoint: a folder that cannot be written is told once") {
   CHECK_THAT(warnings[0], Contains("x.checkpoint") && Contains("goes on without"));
 }
 
-TEST_CASE(
-    "checkpoint: of two runs that write the same output the second keeps and finds nothing while the first lives") {
+TEST_CASE("checkpoint: a second run that writes the same output keeps and finds nothing") {
   const TemporaryFolder folder;
   std::vector<std::string> warnings;
   {
