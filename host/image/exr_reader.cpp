@@ -11,6 +11,7 @@
 #include <ImfStringAttribute.h>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <new>
 
 namespace pointgi {
@@ -109,6 +110,12 @@ Picture read(const std::string& path) {
   return picture;
 }
 
+bool is_png(const std::string& path) {
+  char start[8] = {};
+  return std::ifstream(path, std::ios::binary).read(start, sizeof start) &&
+         std::equal(start, start + sizeof start, "\x89PNG\r\n\x1a\n");
+}
+
 } // namespace
 
 Picture read_exr(const std::string& path) {
@@ -118,6 +125,7 @@ Picture read_exr(const std::string& path) {
   // Also keeps us from waiting for ever on a pipe.
   if (!std::filesystem::is_regular_file(status))
     refuse(path, "is a folder, a device or a pipe, expected an EXR picture; give a regular file");
+  if (is_png(path)) refuse(path, "is a PNG, which holds no radiances; give the EXR picture that was written beside it");
   try {
     return read(path);
   } catch (const Error&) {

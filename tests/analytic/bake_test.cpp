@@ -51,7 +51,7 @@ TEST_CASE("baked radiosity is linear in the light, beyond what a byte shows") {
       REQUIRE(bright[i].radiosity[c] == Approx(1e11 * lit[i].radiosity[c]).epsilon(1e-5)); // float rounding
 }
 
-TEST_CASE("noise of a lit cloud under an area lamp falls with the light samples, which follow the quality") {
+TEST_CASE("noise of a lit cloud under an area lamp falls with the light samples, which follow the quality", "[long]") {
   // A floor below a ball that shines: what its points send on meets nothing, so the noise is that of the direct light
   // alone; a flat lamp would be summed up.
   const std::string scene =

@@ -166,7 +166,7 @@ TEST_CASE("a ball of few patches casts a round shadow, has no dark seams, and hi
   CHECK(unlike == 0);
 }
 
-TEST_CASE("patches of an open, bent sheet end where its discs do") {
+TEST_CASE("patches of an open, bent sheet end where its discs do", "[long]") {
   // A quarter of a cylinder of radius 1 from z = -1 to 1, seen from where its border is the silhouette.
   const TemporaryFolder folder;
   std::ofstream ply(folder.file("sheet.ply"));

@@ -89,7 +89,7 @@ TEST_CASE("a point light in the middle of a closed sphere: rho I / (pi R^2 (1 - 
   CHECK(mean(picture, "R") == Approx(mean(picture, "Direct.R") + mean(picture, "Diffuse.R")).epsilon(1e-5));
 }
 
-TEST_CASE("classes of paths: each bounce in a closed sphere brings rho times the one before") {
+TEST_CASE("classes of paths: each bounce in a closed sphere brings rho times the one before", "[long]") {
   const std::string scene = closed_sphere(0.6, 0.02, "emission = [1.0, 1.0, 1.0]\n", "");
   // 1 %: noise of 24576 paths a picture, 0.2 %.
   double expected = 1.0;
@@ -130,7 +130,7 @@ TEST_CASE("walls of albedo 0 leave what shines, exactly", "[long]") {
     CHECK(all.channels.at(colour) == direct.channels.at(colour));
 }
 
-TEST_CASE("all paths are those of every class together") {
+TEST_CASE("all paths are those of every class together", "[long]") {
   const std::string scene = room();
   const Picture all = trace(scene);
   check_same(all, trace(scene, "LD+E,LE", 2));

@@ -144,7 +144,7 @@ TEST_CASE("a scanned box ends at its edges", "[long]") {
   CHECK(found.deviation < (noise > 0 ? 0.2 : 0.02));
 }
 
-TEST_CASE("a mesh's box ends at its edges, sampled or by its vertices") {
+TEST_CASE("a mesh's box ends at its edges, sampled or by its vertices", "[long]") {
   const TemporaryFolder folder;
   write_obj(folder.file("box.obj"));
   write_grid(folder.file("box.ply"));
@@ -156,7 +156,7 @@ TEST_CASE("a mesh's box ends at its edges, sampled or by its vertices") {
   }
 }
 
-TEST_CASE("a scanned sheet ends half a spacing outside its last points") {
+TEST_CASE("a scanned sheet ends half a spacing outside its last points", "[long]") {
   const TemporaryFolder folder;
   const unsigned seed = GENERATE(1u, 2u);
   write_scan(folder.file("sheet.ply"), 0.0, seed, false);

@@ -26,7 +26,7 @@ const std::string see_through = "backfaces = \"see_through\"\n";
 
 } // namespace
 
-TEST_CASE("a closed room seen through its near walls keeps its light, by both integrators") {
+TEST_CASE("a closed room seen through its near walls keeps its light, by both integrators", "[long]") {
   for (const char* integrator : {"pointgi", "path"}) {
     CAPTURE(integrator);
     const Picture picture =

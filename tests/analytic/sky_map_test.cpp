@@ -207,7 +207,7 @@ TEST_CASE("lobes see a map by sampled light and by their own rays together as by
   }
 }
 
-TEST_CASE("photons of a map carry its flux by way of a mirror") {
+TEST_CASE("photons of a map carry its flux by way of a mirror", "[long]") {
   const MapFile map(one_pixel(32, 8)); // ahead of the camera, to -z, 42 degrees high: its light travels towards +z
   const auto sent = [](const std::string& light) {
     const PhotonScene scene("version = 1\n[caustics]\nphotons = 200000\n"

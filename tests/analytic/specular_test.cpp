@@ -51,7 +51,7 @@ TEST_CASE("balls of two glasses that overlap vanish in a uniform environment, th
   CHECK(smallest(picture, "G") > 0.95); // one of 64 samples lost is 0.984
 }
 
-TEST_CASE("glass of index 1 is not to be seen") {
+TEST_CASE("glass of index 1 is not to be seen", "[long]") {
   const std::string wall = quad("-2.0, -2.0, -1.5", "2.0, 0.0, 0.0", "0.0, 4.0, 0.0", "bright", 0.1) +
                            quad("0.0, -2.0, -1.5", "2.0, 0.0, 0.0", "0.0, 4.0, 0.0", "dim", 0.1);
   const std::string before =
@@ -68,7 +68,7 @@ TEST_CASE("glass of index 1 is not to be seen") {
   CHECK(off / static_cast<double>(bare.channels.at("R").size()) < 0.002);
 }
 
-TEST_CASE("a clear slab reflects 2F/(1+F) of what is before it") {
+TEST_CASE("a clear slab reflects 2F/(1+F) of what is before it", "[long]") {
   // Bright before, dark behind; a box has edges, which the narrow view does not meet.
   const std::string scene = head("0.0, 0.0, 3.0", "0.0, 0.0, 0.0", 4.0, 256) + environment(1.0) + lamp("dark", 0.0) +
                             material("glass", "glass", "ior = 1.5") +
@@ -149,7 +149,7 @@ TEST_CASE("mirrors that face each other end, and lose what they absorb and no mo
   }
 }
 
-TEST_CASE("in a closed room that shines all over, glass and mirrors let no light out") {
+TEST_CASE("in a closed room that shines all over, glass and mirrors let no light out", "[long]") {
   // Any ray ends on a wall's front, of radiance 1; one that got out through the floor below the glass would read
   // nothing.
   const std::string scene = head("0.2, 1.1, 1.7", "0.0, 0.4, 0.0", 60.0, 32, "[48, 36]") + lamp("wall", 1.0) +
@@ -167,7 +167,7 @@ TEST_CASE("in a closed room that shines all over, glass and mirrors let no light
   }
 }
 
-TEST_CASE("furnace with glass and mirrors in it: E/(1 - rho), through shadow rays and without") {
+TEST_CASE("furnace with glass and mirrors in it: E/(1 - rho), through shadow rays and without", "[long]") {
   const std::string scene = head("0.2, 1.1, 1.7", "0.0, 0.4, 0.0", 60.0, 64, "[32, 24]") +
                             material("wall", "diffuse", "albedo = [0.5, 0.5, 0.5]\nemission = [1.0, 1.0, 1.0]") +
                             material("glass", "glass") + material("mirror", "mirror") +

@@ -214,7 +214,7 @@ TEST_CASE("furnace in a two-sided sphere: pi L / (1 - rho) within, pi L outside,
   CHECK(mean(picture(two_sided, "pointgi"), "G") == Approx(radiance / (1.0 - rho)).epsilon(0.02));
 }
 
-TEST_CASE("a two-sided lamp lights both sides alike, with twice the power of one side") {
+TEST_CASE("a two-sided lamp lights both sides alike, with twice the power of one side", "[long]") {
   const double radiance = 3.0;
   const std::string lamp = "emission = [3.0, 3.0, 3.0]\n";
   const std::string lamp_quad = quad({-0.25, 0, -0.25}, {0, 0, 0.5}, {0.5, 0, 0}, 0.05, "lamp");
@@ -255,7 +255,7 @@ TEST_CASE("a two-sided lamp lights both sides alike, with twice the power of one
   }
 }
 
-TEST_CASE("caustics fall on the side of a leaf that they come to") {
+TEST_CASE("caustics fall on the side of a leaf that they come to", "[long]") {
   // A mirror below a leaf throws the light of a lamp between the two up to it; what is above the leaf stays dark.
   const std::string scene =
       "version = 1\n[caustics]\nphotons = 100000\nfeedback = true\n[radiosity]\nmethod = \"fmm\"\n" +

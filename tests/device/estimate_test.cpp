@@ -102,7 +102,7 @@ TEST_CASE("photons are told, and stages that a scene has no use for with the rea
   CHECK_THAT(plain.stage("photon")->why, Contains("no specular material"));
 }
 
-TEST_CASE("what is told grows as pixels and samples do", "[estimate]") {
+TEST_CASE("what is told grows as pixels and samples do", "[estimate][long]") {
   const api::Context context;
   const api::Prepared prepared(context, corner(0.1, false));
   const auto rays = [&](int width, int height, int spp) {

@@ -75,7 +75,7 @@ TEST_CASE("a picture that grew is bit for bit the one that was made at once", "[
   check_same(test::render_text(room, by_paths(true)), test::render_text(room, by_paths(false)));
 }
 
-TEST_CASE("a picture that an error ends has no more noise than that, and its samples make it again") {
+TEST_CASE("a picture that an error ends has no more noise than that, and its samples make it again", "[long]") {
   constexpr double error = 4e-4;
   const auto ended = [&](RenderOptions& options) { options.error = error; };
   const Picture picture = test::render_text(room, ended);
@@ -85,7 +85,7 @@ TEST_CASE("a picture that an error ends has no more noise than that, and its sam
   CHECK(samples < 4096);
 }
 
-TEST_CASE("a time that is short still gives a whole picture") {
+TEST_CASE("a time that is short still gives a whole picture", "[long]") {
   const Picture picture = test::render_text(room, [](RenderOptions& options) { options.seconds = 1e-3; });
   // Of two samples a pixel, without light between surfaces at worst; no row is missing, mirrors are there.
   CHECK(test::mean(picture, "R") == Approx(test::mean(test::render_text(room), "R")).epsilon(0.1));

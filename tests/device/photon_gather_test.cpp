@@ -87,7 +87,7 @@ void require_same(const std::vector<std::vector<float>>& a, const std::vector<st
 
 } // namespace
 
-TEST_CASE("nearest photons are FLANN's: one, fifty, five hundred, a thousand of 100,000") {
+TEST_CASE("nearest photons are FLANN's: one, fifty, five hundred, a thousand of 100,000", "[long]") {
   const auto photons = caustic_photons(100'000, 1);
   const auto places = some_places(1003, 2); // no whole number of work-items
   for (const unsigned k : {1u, 50u, 500u, 1000u}) {

@@ -145,7 +145,7 @@ TEST_CASE("photons end alike by all variants, in trees of any order", "[long]") 
   }
 }
 
-TEST_CASE("a profile says why there are no photons to time") {
+TEST_CASE("a profile says why there are no photons to time", "[long]") {
   const auto reason = [](const PhotonScene& scene) {
     ProfileRequest request{scene.scene,        scene.placed.frame, scene.placed.splats,
                            scene.placed.clips, scene.placed.bends, {}};
@@ -161,7 +161,7 @@ TEST_CASE("a profile says why there are no photons to time") {
   CHECK(run(ball.request()).without_photons == "no specular material");
 }
 
-TEST_CASE("a profile that is stopped tells what is complete and what is not") {
+TEST_CASE("a profile that is stopped tells what is complete and what is not", "[long]") {
   const Ball ball;
   ProfileRequest request = ball.request();
   request.variants = some_variants();

@@ -138,7 +138,7 @@ TEST_CASE("rays end: one splat, coincident splats, discs larger than the cells")
   CHECK(differences(trace_tree(splats, rays, variant), trace_all(splats, rays)) == 0);
 }
 
-TEST_CASE("rays that are no numbers meet nothing, through every kernel") {
+TEST_CASE("rays that are no numbers meet nothing, through every kernel", "[long]") {
   const float nan = std::nanf(""), inf = INFINITY;
   std::vector<RayQuery> rays = hard_rays(sphere_splats(500), 8, 3);
   for (std::size_t k = 0; k < rays.size(); ++k)

@@ -317,7 +317,7 @@ TEST_CASE("dumped kernels hold what the scene needs and no more") {
   CHECK_THAT(text, Contains("#line 1 \"kernels/surface/disc.cl\""));
 }
 
-TEST_CASE("info tells what a file holds, and devices list and check") {
+TEST_CASE("info tells what a file holds, and devices list and check", "[long]") {
   const TemporaryFolder folder;
   const std::string cloud = folder.write("three.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
                                                       "property float y\nproperty float z\nproperty uchar weird\n"
@@ -378,7 +378,7 @@ TEST_CASE("compare: figures on stdout as text or JSON, and exit codes") {
   CHECK(run_program("compare " + a + " " + scene).code == 3);
 }
 
-TEST_CASE("a black picture says why, and what to change") {
+TEST_CASE("a black picture says why, and what to change", "[long]") {
   const TemporaryFolder folder;
   const std::string head = "version = 1\n[render]\nsize = [16, 12]\nspp = 2\n"
                            "[camera]\nposition = [0, 1, 3]\nlook_at = [0, 0, 0]\n"
@@ -438,7 +438,7 @@ TEST_CASE("light paths go with the path tracer only") {
     CHECK(picture.channels.count(channel) == 1);
 }
 
-TEST_CASE("a PNG that is burnt or nearly black names the exposure, and the lamp that is too weak") {
+TEST_CASE("a PNG that is burnt or nearly black names the exposure, and the lamp that is too weak", "[long]") {
   const TemporaryFolder folder;
   const auto render = [&](const std::string& scene, const std::string& more) {
     return run_program("render " + folder.write("scene.toml", scene) + " -o " + folder.file("x.exr") + more);

@@ -120,7 +120,7 @@ TEST_CASE("where the library fails at the end, the picture is written as it was 
   CHECK(picture.channels.at("Direct.B") == plain.channels.at("Direct.B"));
 }
 
-TEST_CASE("a growing picture ends as the one that is denoised at once") {
+TEST_CASE("a growing picture ends as the one that is denoised at once", "[long]") {
   const FakeOidn fake;
   const TemporaryFolder folder;
   const std::string scene = folder.write("mirror.toml", mirror_scene());
@@ -158,7 +158,7 @@ TEST_CASE("pictures of a given time or error are denoised, and those that are in
   CHECK(is_whole(picture));
 }
 
-TEST_CASE("windows, single pixels and scenes without light are denoised") {
+TEST_CASE("windows, single pixels and scenes without light are denoised", "[long]") {
   const FakeOidn fake;
   const TemporaryFolder folder;
   const std::string scene = folder.write("mirror.toml", mirror_scene()), out = folder.file("x.exr");

@@ -46,7 +46,7 @@ TEST_CASE("faults: an OpenCL call that fails ends in the right picture or in one
   check_kinds(FaultScene(images_way()), {"image"});
 }
 
-TEST_CASE("faults: a program that the driver does not build is told with the driver's own code", "[faults]") {
+TEST_CASE("faults: a program that the driver does not build is told with the driver's own code", "[faults][long]") {
   const FaultScene scene(directions_way());
   CallReport report;
   for (const char* lasts : {"", " FAULT_LASTS=1"}) { // with no log to be had, either
@@ -67,7 +67,7 @@ TEST_CASE("faults: a run that is killed while it writes leaves old files or whol
   check_kinds(FaultScene(fmm_way()), {"killed"});
 }
 
-TEST_CASE("faults: threads that are not to be had are done without", "[faults]") {
+TEST_CASE("faults: threads that are not to be had are done without", "[faults][long]") {
   const FaultScene scene(fmm_way());
   for (const bool all : {false, true}) {
     const Judgement judgement = scene.judge({"pthread_create", all ? "1" : "2", EAGAIN, all});

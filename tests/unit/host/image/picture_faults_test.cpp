@@ -186,6 +186,7 @@ TEST_CASE("what is no EXR picture is refused as input", "[picture]") {
   REQUIRE(::mkfifo(folder.file("pipe.exr").c_str(), 0600) == 0);
   check_refused(folder.file("pipe.exr"));
   check_refused(folder.file("good.png"));
+  CHECK_THROWS_WITH(read_exr(folder.file("good.png")), Catch::Contains("a PNG, which holds no radiances"));
   const std::string damaged = folder.file("damaged.exr");
   for (const std::size_t kept : {std::size_t{0}, std::size_t{4}, std::size_t{9}, std::size_t{200}, good.size() / 2}) {
     put_bytes(damaged, good.substr(0, kept));
