@@ -266,10 +266,20 @@ ExitCode run_render(const RenderOptions& options) {
   const api::Prepared prepared(context, scene, run.control());
   const bool of_kind = !setting && options.integrator != "path";
   bool growing = grows(options, prepared, pixels);
+  PictureOutput output(output_of(options),
+                       description.render.auto_exposure ? std::nullopt
+                                                        : std::optional<double>(description.render.exposure),
+                       std::move(denoiser));
+  std::unique_ptr<Checkpoint> checkpoint;
+  if (options.resume) remove_unfinished(output.png_path());
+  if (!has_open_goal(options))
+    checkpoint = open_checkpoint(options, output.exr_path(),
+                                 [&] { return checkpoint_key(scene, prepared, options.integrator, &film); });
   // As the run that is gone on from: one keeps passes, the other rows.
-  const std::string kept = checkpoint_folder(output_of(options));
-  if (options.resume && Checkpoint::is_in(kept, "rows-")) growing = false;
-  if (options.resume && Checkpoint::is_in(kept, "film-")) growing = true;
+  const std::string kept = checkpoint_folder(output.exr_path());
+  const bool goes_on = options.resume && checkpoint && checkpoint->take_folder();
+  if (goes_on && Checkpoint::is_in(kept, "rows-")) growing = false;
+  if (goes_on && Checkpoint::is_in(kept, "film-")) growing = true;
   BeforeLight before_light;
   if (of_kind && has_open_goal(options))
     before_light = [&](PictureGoal& goal, const PreviewCost&) {
@@ -281,15 +291,6 @@ ExitCode run_render(const RenderOptions& options) {
     };
   else if (of_kind)
     tell_of_kind(options, prepared, "`pointgi info` tells the seconds");
-  PictureOutput output(output_of(options),
-                       description.render.auto_exposure ? std::nullopt
-                                                        : std::optional<double>(description.render.exposure),
-                       std::move(denoiser));
-  std::unique_ptr<Checkpoint> checkpoint;
-  if (options.resume) remove_unfinished(output.png_path());
-  if (!has_open_goal(options))
-    checkpoint = open_checkpoint(options, output.exr_path(),
-                                 [&] { return checkpoint_key(scene, prepared, options.integrator, &film); });
   const PictureRun picture{context,       prepared,        film, options.integrator == "path", pixels,
                            run.control(), checkpoint.get()};
   const MadePictureFiles made = resumable(checkpoint.get(), output.exr_path(), [&] {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace pointgi {
@@ -53,22 +54,51 @@ bool is_of_checkpoint(const fs::path& file) {
 Checkpoint::Checkpoint(CheckpointOptions options) : options_(std::move(options)) {}
 
 Checkpoint::~Checkpoint() {
-  if (lock_ >= 0) close(lock_);
+  let_go();
 }
 
-bool Checkpoint::owns_folder() {
+void Checkpoint::let_go() {
+  if (lock_ >= 0) close(lock_);
+  lock_ = -1;
+}
+
+bool Checkpoint::take_folder() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return take_locked();
+}
+
+bool Checkpoint::take_locked() {
   if (lock_ >= 0) return true;
-  if (failed_) return false;
-  const int file = open((fs::path(options_.folder) / lock_name).c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-  if (file < 0) return true;                                         // what is written next tells why
-  if (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) { // not all file systems have locks
-    lock_ = file;
-    return true;
+  if (refused_) return false;
+  const std::string path = (fs::path(options_.folder) / lock_name).string();
+  const auto refuse = [&](const std::string& why) {
+    refused_ = true;
+    warn(why + given_up);
+    return false;
+  };
+  constexpr int attempts = 100; // each is lost to one run that ends in this moment
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    std::error_code failed;
+    fs::create_directories(options_.folder, failed);
+    // Read only: another user's file may be locked, too.
+    const int file = open(path.c_str(), O_CREAT | O_RDONLY | O_CLOEXEC, 0666);
+    if (file < 0 && errno == ENOENT) continue;
+    if (file < 0 && fs::exists(fs::symlink_status(path, failed))) return refuse(path + ": " + std::strerror(errno));
+    if (file < 0) return true; // a folder that cannot be written: nobody works in it
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(file);
+      return refuse(options_.folder + ": another run that writes the same output is at work");
+    }
+    // Not all file systems have locks. The run that had this one may have removed the file, and another made it anew.
+    struct stat opened, named;
+    if (fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+        opened.st_ino == named.st_ino) {
+      lock_ = file;
+      return true;
+    }
+    close(file);
   }
-  close(file);
-  failed_ = true;
-  warn(options_.folder + ": another run that writes the same output is at work" + given_up);
-  return false;
+  return refuse(path + ": cannot be made");
 }
 
 bool Checkpoint::is_in(const std::string& folder, const std::string& name) {
@@ -96,7 +126,7 @@ std::optional<std::string> Checkpoint::find(const std::string& name) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::string path = file_of(name);
   std::error_code failed;
-  if (!fs::is_regular_file(path, failed) || !owns_folder()) return std::nullopt;
+  if (!fs::is_regular_file(path, failed) || !take_locked()) return std::nullopt;
   const auto refused = [&](const char* what) {
     warn(path + ": " + what + "; it is not used, and what it should hold is computed again");
     return std::nullopt;
@@ -141,10 +171,7 @@ void Checkpoint::clear() {
 }
 
 void Checkpoint::write_locked(const std::string& name, const std::string& bytes) {
-  if (failed_) return;
-  std::error_code ignored;
-  fs::create_directories(options_.folder, ignored); // or the file says that it is not there
-  if (!owns_folder()) return;
+  if (failed_ || !take_locked()) return;
   if (!begun_) clear();
   begun_ = true;
   Header header{{}, version, byte_order, key().size(), bytes.size(), hash_of(key(), bytes)};
@@ -199,13 +226,14 @@ void Checkpoint::remove() {
   const std::lock_guard<std::mutex> lock(mutex_);
   waiting_.clear();
   waiting_bytes_ = 0;
-  std::error_code ignored;
   if (begun_) clear();
-  // The lock's file last: until then no other run takes the folder for its own.
-  if (lock_ >= 0 && (begun_ || !is_in(options_.folder))) {
-    fs::remove(fs::path(options_.folder) / lock_name, ignored);
+  if (begun_ || (lock_ >= 0 && !is_in(options_.folder))) {
+    std::error_code ignored;
+    // The lock's file last: until then no other run takes the folder for its own.
+    if (lock_ >= 0) fs::remove(fs::path(options_.folder) / lock_name, ignored);
     fs::remove(options_.folder, ignored); // stays where others have put something into it
   }
+  let_go();
 }
 
 CheckpointScope::CheckpointScope(Checkpoint* checkpoint) : outer_(current) {

@@ -26,9 +26,14 @@ struct CheckpointOptions {
 class Checkpoint {
 public:
   explicit Checkpoint(CheckpointOptions options);
-  ~Checkpoint();
+  ~Checkpoint(); ///< what is kept stays; another run may take the folder
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
+
+  /// Makes the folder this run's until its end, with a file that it locks there; find and keep do so first. False,
+  /// which is told once, where another run has it: nothing is kept or found then. Where the file system has no locks
+  /// any run takes it.
+  bool take_folder();
 
   /// "photon-2" of the second call with "photon": a run does the same work in the same order.
   std::string numbered(const std::string& name);
@@ -58,8 +63,8 @@ public:
 
 private:
   std::string file_of(const std::string& name) const;
-  /// False, which is told once, where another run is at work in the folder.
-  bool owns_folder();
+  bool take_locked();
+  void let_go();
   const std::string& key();
   void clear();
   void write_locked(const std::string& name, const std::string& bytes);
@@ -75,6 +80,7 @@ private:
   Clock::time_point kept_at_ = Clock::now();
   std::size_t found_ = 0;
   int lock_ = -1;        ///< file descriptor: as long as it is open, the folder is this run's
+  bool refused_ = false; ///< another run has the folder
   bool begun_ = false;   ///< the folder holds nothing of other runs
   bool kept_ = false;    ///< something, in this run
   bool failed_ = false;  ///< and is left alone from then on

@@ -86,7 +86,7 @@ public:
     return *this;
   }
 
-  /// Nothing was missing yet.
+  /// Nothing was missing yet: to end a loop by. At the end is_whole() tells.
   bool is_good() const { return good_; }
   /// Everything was there, and nothing is left.
   bool is_whole() const { return good_ && at_ == bytes_.size(); }

@@ -354,16 +354,20 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   if (!method.is_linear)
     throw std::logic_error("radiosity: light added to what a method that is not linear has solved");
   bool made = false;
-  std::uint64_t rays_before = 0;
   const double tolerance = std::min(request.scene.radiosity.tolerance / share, coarsest_tolerance);
-  RadiosityField field = kept_or_made<RadiosityField>("exchange-again", [&] {
+  AddedExchange added = kept_or_made<AddedExchange>("exchange-again", [&] {
     PreparedRadiosity& prepared = prepared_of(light);
     stages.start(method.name);
     StageWatch watch(session);
     made = true;
-    rays_before = prepared.rays();
-    return prepared.solve({entering, {}}, tolerance, watch.report());
+    const std::uint64_t before = prepared.rays();
+    AddedExchange solved;
+    solved.field = prepared.solve({entering, {}}, tolerance, watch.report());
+    solved.rays = prepared.rays() - before;
+    return solved;
   });
+  RadiosityField& field = added.field;
+  light.rays += added.rays;
   if (light.entered.empty()) light.entered = light.direct;
   for (std::size_t i = 0; i < light.from_surfaces.size(); ++i) {
     light.from_surfaces[i] += field.irradiance[i];
@@ -372,7 +376,6 @@ std::vector<float> add_exchange(Session& session, const IndirectRequest& request
   light.solution.applies += field.solution.applies;
   if (field.solution.end != SolveEnd::converged) light.solution.end = field.solution.end;
   if (!made) return std::move(field.irradiance);
-  light.rays += light.prepared->rays() - rays_before;
   stages.finish(request.points.size, "points");
   report_solution(light, field.solution);
   return std::move(field.irradiance);

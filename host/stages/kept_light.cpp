@@ -51,14 +51,14 @@ void unpack(Unpacker& from, IndirectLight& light) {
   light.method = method < methods.size() ? methods[method] : nullptr;
 }
 
-void pack(Packer& to, const RadiosityField& field) {
-  to << field.irradiance;
-  pack_solution(to, field.solution);
+void pack(Packer& to, const AddedExchange& added) {
+  to << added.field.irradiance << added.rays;
+  pack_solution(to, added.field.solution);
 }
 
-void unpack(Unpacker& from, RadiosityField& field) {
-  from >> field.irradiance;
-  unpack_solution(from, field.solution);
+void unpack(Unpacker& from, AddedExchange& added) {
+  from >> added.field.irradiance >> added.rays;
+  unpack_solution(from, added.field.solution);
 }
 
 void pack(Packer& to, const TracedPhotons& traced) {

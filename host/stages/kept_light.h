@@ -13,9 +13,14 @@ void unpack(Unpacker& from, ShaftLight& light);
 void pack(Packer& to, const IndirectLight& light);
 void unpack(Unpacker& from, IndirectLight& light);
 
-/// Not the radiosity, of which the irradiance was gathered.
-void pack(Packer& to, const RadiosityField& field);
-void unpack(Unpacker& from, RadiosityField& field);
+/// What add_exchange() has solved.
+struct AddedExchange {
+  RadiosityField field;   ///< kept without the radiosity, of which the irradiance was gathered
+  std::uint64_t rays = 0; ///< traced for it
+};
+
+void pack(Packer& to, const AddedExchange& added);
+void unpack(Unpacker& from, AddedExchange& added);
 
 void pack(Packer& to, const TracedPhotons& traced);
 void unpack(Unpacker& from, TracedPhotons& traced);

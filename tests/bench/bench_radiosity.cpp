@@ -1,7 +1,6 @@
-/// Radiosity by V-map and fast multipole method: how it grows with the points of one room, beside directions, which a
-/// scene of its size is solved with unless it asks for another method; and against the direct solver, which traces a
-/// ray a pair. Both sides of a comparison run in turn, A B A B, and the median of the pairs
-/// counts. bench_radiosity --help
+/// Radiosity by V-map and fast multipole method: how it grows with the points of one room, beside directions (one run
+/// each); and against the direct solver, which traces a ray a pair: both run in turn, A B A B, and the median of the
+/// pairs counts. bench_radiosity --help
 #include "fmm/ref/direct_sum.h"
 #include "fmm/solve/solve.h"
 #include "host/passes/visibility.h"
@@ -133,8 +132,8 @@ struct DirectionsRun {
   Seconds all;
 };
 
-/// As a scene is solved that says no more than the method.
-DirectionsRun run_directions(Session& session, const test::LitRoom& room) {
+/// As a scene is solved that says no more than the method and the tolerance.
+DirectionsRun run_directions(Session& session, const test::LitRoom& room, double tolerance) {
   DirectionsRun run;
   Stopwatch watch(session);
   TraversalVariant variant = room.variant;
@@ -144,7 +143,7 @@ DirectionsRun run_directions(Session& session, const test::LitRoom& room) {
   const auto prepared = radiosity_method("directions")
                             ->prepare(session, {room.pools, variant, room.points, {}, 1.0, 1}, settings, std::nullopt,
                                       [](const std::string&) {});
-  const RadiosityField field = prepared->solve({room.direct, {}}, settings.tolerance, [](const std::string&) {});
+  const RadiosityField field = prepared->solve({room.direct, {}}, tolerance, [](const std::string&) {});
   run.all = watch.lap();
   run.rays = prepared->rays();
   run.field.from_surfaces.assign(field.irradiance.begin(), field.irradiance.end());
@@ -242,8 +241,8 @@ void measure_growth(Session& session, const std::vector<std::size_t>& sizes, con
     print_fmm(room.points.size(), run);
     std::printf(" | %6.2f %%\n", 100.0 * error_at(session, room, run.field, receivers));
     std::fflush(stdout);
-    const DirectionsRun directions = run_directions(session, room);
-    std::printf("%8s | %8s %7.2f %7s | %36.2f | %7.2f | %6.2f %%\n", "", "directions", million(directions.rays), "",
+    const DirectionsRun directions = run_directions(session, room, settings.tolerance);
+    std::printf("%8s | %8s %7.2f %7s | %35.2f | %7.2f | %6.2f %%\n", "", "by rays", million(directions.rays), "",
                 directions.all.wall, directions.all.device,
                 100.0 * error_at(session, room, directions.field, receivers));
     std::fflush(stdout);
@@ -367,7 +366,9 @@ int main(int argc, char** argv) {
   try {
     Session session(choose_device(""));
     std::printf("device: %s (%s)\n", session.info().name.c_str(), session.info().platform.c_str());
-    run_fmm(session, test::LitRoom(session, 2000), settings); // builds the kernels
+    const test::LitRoom small(session, 2000); // builds the kernels
+    run_fmm(session, small, settings);
+    run_directions(session, small, settings.tolerance);
     if (both || only_growth) measure_growth(session, sizes, settings, receivers);
     if (both || only_direct) measure_against_direct(session, points, pairs, settings, large);
     if (only_sweep) sweep(session, points, epsilons, samples, settings);

@@ -165,8 +165,8 @@ std::size_t EmbreePeer::any_packet16(const std::vector<RayQuery>& rays) const {
       all.tnear[k] = q.t_min, all.tfar[k] = q.t_max, all.mask[k] = ~0u;
     }
     rtcOccluded16(valid, scene_, &context, &all);
-    for (const float far : all.tfar)
-      blocked += far < 0.0f;
+    for (const float end : all.tfar)
+      blocked += end < 0.0f;
   }
   return blocked;
 }

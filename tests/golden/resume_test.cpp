@@ -59,11 +59,14 @@ TEST_CASE("a render that was killed after any piece of work goes on to the same 
     REQUIRE(run_program(work.command + " --stats " + stats).code == 0);
     const auto undisturbed = work.picture();
     const nlohmann::json said = json_of(stats);
+    for (const char* section : {"radiosity", "vmap", "photons"})
+      REQUIRE(said.contains(section));
     check_tidy(work);
     bool used = false;
     for (const std::size_t pieces : {1, 2, 3, 4, 6}) {
       CAPTURE(options, pieces);
       std::filesystem::remove(work.file);
+      std::filesystem::remove(stats);
       const bool killed = work.kill_after(pieces);
       const Run resumed = run_program(work.command + " --resume --stats " + stats);
       INFO(resumed.err);

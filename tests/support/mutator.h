@@ -25,6 +25,7 @@ private:
   /// Portable, unlike a distribution.
   std::uint32_t below(std::size_t end) { return static_cast<std::uint32_t>(random_() % end); }
 
+  /// One draw a statement: the order in which a call's arguments are evaluated is the compiler's.
   void change_once(std::string& bytes) {
     const std::size_t at = below(bytes.size());
     switch (below(8)) {
@@ -37,7 +38,7 @@ private:
     case 2:
       bytes.resize(at);
       break;
-    case 3: { // arguments of one call are drawn in the compiler's order
+    case 3: {
       const auto character = static_cast<char>(below(256));
       bytes.insert(at, std::string(1 + below(8), character));
       break;

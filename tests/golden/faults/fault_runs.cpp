@@ -101,6 +101,10 @@ FaultScene::Way cached_programs_way() {
   return {"cached programs", "--set radiosity.method=directions", "DEVICE_PLATFORM=Another ", true};
 }
 
+std::string with_faults() {
+  return "env LD_PRELOAD=" POINTGI_FAULTS_LIBRARY;
+}
+
 FaultScene::FaultScene(const Way& way) : way_(way) {
   folder_.write("scene.toml", scene_text());
   CallReport ignored;
@@ -138,12 +142,11 @@ Run FaultScene::run(const std::string& variables, const std::string& options, in
   put_old_files(slot);
   const std::string folder = folder_of(slot), out = folder + "/out/", told = folder + "/report";
   fs::remove(told);
-  const Run run =
-      run_program("render " + folder_.file("scene.toml") + " --quiet " + way_.options + " -o " + out +
-                      "a.exr --stats " + out + "stats.json --trace " + out + "trace.json " + options,
-                  "timeout -s KILL " + std::to_string(limit_seconds_) +
-                      " env LD_PRELOAD=" POINTGI_FAULTS_LIBRARY " POINTGI_DEVICE=cpu POINTGI_CACHE_DIR=" + folder +
-                      "/cache FAULT_REPORT=" + told + " " + way_.variables + variables);
+  const Run run = run_program("render " + folder_.file("scene.toml") + " --quiet " + way_.options + " -o " + out +
+                                  "a.exr --stats " + out + "stats.json --trace " + out + "trace.json " + options,
+                              "timeout -s KILL " + std::to_string(limit_seconds_) + " " + with_faults() +
+                                  " POINTGI_DEVICE=cpu POINTGI_CACHE_DIR=" + folder + "/cache FAULT_REPORT=" + told +
+                                  " " + way_.variables + variables);
   report = read_report(told);
   return run;
 }

@@ -20,6 +20,9 @@ struct Fault {
   std::string text() const;
 };
 
+/// What goes before the program, and before variables that say which call fails: loads the library of faults.
+std::string with_faults();
+
 /// What a run with the library of faults told of its calls.
 struct CallReport {
   bool is_there = false; ///< not of a run that crashed

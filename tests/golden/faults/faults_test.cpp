@@ -67,6 +67,26 @@ TEST_CASE("faults: a run that is killed while it writes leaves old files or whol
   check_kinds(FaultScene(fmm_way()), {"killed"});
 }
 
+TEST_CASE("faults: a run whose last file the disk does not take keeps its work and tells how to go on", "[faults]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("scene.toml", small_scene());
+  // A file is written to the disk, then its folder: a picture has two before the last one, a cloud has one.
+  const std::pair<std::string, int> commands[] = {{"render " + scene + " -o " + folder.file("x.exr"), 5},
+                                                  {"bake " + scene + " -o " + folder.file("x.ply"), 3}};
+  for (const auto& [begin, last] : commands) {
+    const std::string command = begin + " --checkpoint-seconds 0 --stats " + folder.file("stats.json");
+    const Run run = run_program(command, with_faults() + " FAULT_CALL=fsync FAULT_AT=" + std::to_string(last) +
+                                             " FAULT_CODE=" + std::to_string(ENOSPC));
+    CAPTURE(command, run.err);
+    CHECK(run.code == 5);
+    CHECK_THAT(run.err, Contains("stats.json: cannot write") && Contains("with --resume goes on from"));
+    const Run resumed = run_program(command + " --resume");
+    CAPTURE(resumed.err);
+    CHECK(resumed.code == 0);
+    CHECK_THAT(resumed.err, Contains("were an earlier run's"));
+  }
+}
+
 TEST_CASE("faults: threads that are not to be had are done without", "[faults][long]") {
   const FaultScene scene(fmm_way());
   for (const bool all : {false, true}) {

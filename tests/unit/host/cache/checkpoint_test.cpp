@@ -173,12 +173,45 @@ TEST_CASE("checkpoint: a second run that writes the same output keeps and finds 
   {
     Checkpoint first(in(folder, false));
     first.keep("rows-0", "1");
-    Checkpoint second(in(folder, true, &warnings));
-    CHECK_FALSE(second.find("rows-0").has_value());
-    second.keep("rows-0", "2");
-    second.remove();
-    REQUIRE(warnings.size() == 1);
-    CHECK_THAT(warnings[0], Contains("x.checkpoint") && Contains("another run") && Contains("goes on without"));
+    for (const bool resumes : {false, true}) {
+      CAPTURE(resumes);
+      warnings.clear();
+      Checkpoint second(in(folder, resumes, &warnings));
+      second.keep("rows-0", "2");
+      second.keep("rows-1", "2");
+      CHECK_FALSE(second.find("rows-0").has_value());
+      CHECK_FALSE(second.take_folder());
+      second.remove();
+      REQUIRE(warnings.size() == 1);
+      CHECK_THAT(warnings[0], Contains("x.checkpoint") && Contains("another run") && Contains("goes on without"));
+    }
+    first.keep("rows-1", "1");
   }
-  CHECK(Checkpoint(in(folder, true)).find("rows-0") == std::optional<std::string>("1"));
+  Checkpoint next(in(folder, true, &warnings));
+  CHECK(next.find("rows-0") == std::optional<std::string>("1"));
+  CHECK(next.find("rows-1") == std::optional<std::string>("1"));
+  next.remove();
+  CHECK_FALSE(std::filesystem::exists(folder.file("x.checkpoint")));
+  // One that has let go of it makes it anew.
+  next.keep("rows-2", "3");
+  Checkpoint last(in(folder, true, &warnings));
+  last.keep("rows-2", "4");
+  CHECK(next.find("rows-2") == std::optional<std::string>("3"));
+}
+
+TEST_CASE("checkpoint: a lock that cannot be opened is another run's, and pieces that are only read are found") {
+  const TemporaryFolder folder;
+  Checkpoint(in(folder, false)).keep("rows-0", "1");
+  const std::string lock = folder.file("x.checkpoint/in-use");
+  std::filesystem::remove(lock);
+  std::filesystem::create_directory_symlink(lock, lock); // a loop
+  std::vector<std::string> warnings;
+  Checkpoint checkpoint(in(folder, true, &warnings));
+  CHECK_FALSE(checkpoint.take_folder());
+  CHECK_FALSE(checkpoint.find("rows-0").has_value());
+  CHECK(warnings.size() == 1);
+  std::filesystem::remove(lock);
+  Checkpoint gives_up(in(folder, true, &warnings));
+  gives_up.give_up("no memory");
+  CHECK(gives_up.find("rows-0") == std::optional<std::string>("1"));
 }
