@@ -16,6 +16,7 @@ struct Transport : Eigen::EigenBase<Transport> {
   using Scalar = double;
   using RealScalar = double;
   using StorageIndex = int;
+  // NOLINTNEXTLINE(readability-identifier-naming): as Eigen calls them
   enum { ColsAtCompileTime = Eigen::Dynamic, MaxColsAtCompileTime = Eigen::Dynamic, IsRowMajor = false };
 
   RadiosityOperator* exchange = nullptr;
@@ -37,7 +38,7 @@ namespace Eigen::internal {
 template <class Right>
 struct generic_product_impl<pointgi::Transport, Right, SparseShape, DenseShape, GemvProduct>
     : generic_product_impl_base<pointgi::Transport, Right, generic_product_impl<pointgi::Transport, Right>> {
-  template <class Result>
+  template <class Result> // NOLINTNEXTLINE(readability-identifier-naming): as Eigen calls it
   static void scaleAndAddTo(Result& result, const pointgi::Transport& transport, const Right& x, const double& scale) {
     const Ref<const VectorXd> b = x; // copied only where it is an expression
     ++transport.applies;

@@ -262,7 +262,7 @@ private:
       small.height = std::max(1, full.height / part);
       FilmJob job(light_, small);
       const Clock::time_point begin = Clock::now();
-      const RenderTotals totals = job.render([](const Band&) {});
+      RenderTotals totals = job.render([](const Band&) {});
       if (totals.interrupted) throw interruption();
       seconds = seconds_since(begin);
       return totals;

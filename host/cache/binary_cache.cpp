@@ -47,7 +47,7 @@ std::string cache_folder() {
     const char* value = std::getenv(name);
     return value != nullptr ? value : "";
   };
-  if (const std::string own = variable("POINTGI_CACHE_DIR"); !own.empty()) return own;
+  if (std::string own = variable("POINTGI_CACHE_DIR"); !own.empty()) return own;
   if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return xdg + "/pointgi";
   if (const std::string home = variable("HOME"); !home.empty()) return home + "/.cache/pointgi";
   return {};

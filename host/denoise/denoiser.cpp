@@ -1,12 +1,9 @@
 #include "host/denoise/denoiser.h"
 #include "host/error.h"
-#include <array>
-#include <cerrno>
+#include "host/trial.h"
 #include <cmath>
 #include <cstring>
-#include <fcntl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 #include <vector>
 
 namespace pointgi {
@@ -115,49 +112,17 @@ std::string outcome_of_trial() {
   return {};
 }
 
-void be_silent() {
-  const int nowhere = open("/dev/null", O_WRONLY);
-  if (nowhere < 0) return;
-  dup2(nowhere, STDOUT_FILENO);
-  dup2(nowhere, STDERR_FILENO);
-}
-
-std::string read_all(int from) {
-  std::string text;
-  std::array<char, 4096> part;
-  for (;;) {
-    const ssize_t count = read(from, part.data(), part.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(part.data(), static_cast<std::size_t>(count));
-  }
-}
-
 } // namespace
 
 void try_denoiser() {
-  int ends[2];
-  if (pipe(ends) != 0) return; // the trial is all that is lost
-  const pid_t trial = fork();
-  if (trial == 0) {
-    close(ends[0]);
-    be_silent();
-    const std::string outcome = outcome_of_trial();
-    const ssize_t written = write(ends[1], outcome.data(), outcome.size());
-    _exit(written < 0 ? 1 : 0);
-  }
-  close(ends[1]);
-  const std::string outcome = trial > 0 ? read_all(ends[0]) : std::string();
-  close(ends[0]);
-  int status = 0;
-  while (trial > 0 && waitpid(trial, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!outcome.empty()) throw Error(static_cast<ErrorKind>(outcome[0] - '0'), outcome.substr(1));
-  if (trial > 0 && status != 0)
-    throw Error(ErrorKind::usage,
-                "--denoise: the library of Open Image Denoise crashes" +
-                    (WIFSIGNALED(status) ? std::string(" (") + strsignal(WTERMSIG(status)) + ")" : std::string()) +
-                    ": it is damaged, or this processor cannot run it" + update_remedy);
+  const Trial trial = try_in_child(outcome_of_trial);
+  if (!trial.outcome.empty()) throw Error(static_cast<ErrorKind>(trial.outcome[0] - '0'), trial.outcome.substr(1));
+  if (trial.status != 0)
+    throw Error(
+        ErrorKind::usage,
+        "--denoise: the library of Open Image Denoise crashes" +
+            (WIFSIGNALED(trial.status) ? std::string(" (") + strsignal(WTERMSIG(trial.status)) + ")" : std::string()) +
+            ": it is damaged, or this processor cannot run it" + update_remedy);
 }
 
 } // namespace pointgi

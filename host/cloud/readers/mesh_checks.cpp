@@ -1,7 +1,9 @@
 #include "host/cloud/readers/mesh_checks.h"
 #include "host/cloud/input_file.h"
 #include "host/cloud/readers/record_values.h"
+#include "host/trial.h"
 #include <algorithm>
+#include <assimp/Importer.hpp>
 #include <assimp/mesh.h>
 #include <charconv>
 
@@ -29,6 +31,27 @@ void check_glb(const InputFile& file) {
                               " bytes, and the file ends before");
     at += chunk_header + length;
   }
+}
+
+/// Whether a primitive may be a line loop, a line strip or a triangle fan; keys with escapes may be any.
+bool has_lines_or_fans(std::string_view text) {
+  if (text.find("\\u") != std::string_view::npos) return true;
+  constexpr std::string_view key = "\"mode\"";
+  for (std::size_t at = 0; (at = text.find(key, at)) != std::string_view::npos;) {
+    at = text.find_first_not_of(" \t\r\n:", at + key.size());
+    if (at == std::string_view::npos || text[at] == '2' || text[at] == '3' || text[at] == '6') return true;
+  }
+  return false;
+}
+
+void check_gltf(const std::string& path) {
+  const FileBytes bytes = read_whole_file(path);
+  if (!has_lines_or_fans({bytes.data.get(), bytes.size})) return;
+  const Trial trial = try_in_child([&] {
+    Assimp::Importer().ReadFile(path, 0);
+    return std::string();
+  });
+  if (trial.status != 0) refuse(path, "the library that reads it crashes, at a line or a fan of triangles");
 }
 
 /// Words of a text, and lines from where the words have come to; comments stand before a word, not between lines.
@@ -122,6 +145,7 @@ void check_mesh_file(const std::string& path) {
   const InputFile file(path);
   check_glb(file);
   if (has_extension(path, ".off")) check_off(file);
+  if (has_extension(path, ".gltf") || has_extension(path, ".glb")) check_gltf(path);
 }
 
 void prepare_to_cut(aiMesh& mesh, const std::string& path) {

@@ -7,7 +7,8 @@ struct aiMesh;
 namespace pointgi {
 
 /// Before Assimp reads the file. Throws Error(input) for binary glTF whose chunks are longer than the file, of which it
-/// would take the memory, and for OFF whose counts and lines do not agree.
+/// would take the memory, for OFF whose counts and lines do not agree, and for glTF at which Assimp crashes: it follows
+/// lines and fans of triangles from faces that it has left out.
 void check_mesh_file(const std::string& path);
 
 /// Before Assimp cuts polygons up: that corners exist, and that a mesh of polygons has one of more than three corners;

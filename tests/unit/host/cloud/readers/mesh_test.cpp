@@ -259,6 +259,30 @@ TEST_CASE("mesh: faces that a damaged file gets wrong do not end the program") {
   refused("nameless.off", "1\n3 0\n4 4 1\n0\n0\n0\n0", "expected OFF");
 }
 
+TEST_CASE("mesh: a glTF whose lines or fans name no vertex does not end the program, sound ones are read") {
+  const TemporaryFolder folder;
+  CloudReport report;
+  // Four vertices, the corners of a tetrahedron, and the indices 0 2 1 0 1 3.
+  const auto gltf = [](const std::string& attribute, int mode) {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+      "meshes":[{"primitives":[{"attributes":{")" +
+           attribute + R"(":0},"indices":1,"mode": )" + std::to_string(mode) + R"(},
+        {"attributes":{"POSITION":0},"indices":1,"mode":4}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+        {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
+      "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+      "buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,)" +
+           "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMA" + R"("}]})";
+  };
+  for (const int mode : {2, 3, 4, 6}) {
+    CAPTURE(mode);
+    CHECK(sample_mesh(folder.write("sound.gltf", gltf("POSITION", mode)), 0.1, report).size() > 0);
+    if (mode == 4) continue;
+    CHECK_THROWS_WITH(sample_mesh(folder.write("x.gltf", gltf("YOSITION", mode)), 0.1, report),
+                      Contains("x.gltf: cannot be read as a mesh"));
+  }
+}
+
 TEST_CASE("mesh: faces whose corners do not exist are refused before they are cut up, faces without corners are none") {
   aiMesh mesh;
   mesh.mNumVertices = 4;
