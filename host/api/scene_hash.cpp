@@ -6,6 +6,7 @@
 #include "host/passes/variant.h"
 #include <cstdio>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <sstream>
 
 namespace pointgi::api {
