@@ -18,10 +18,15 @@ namespace {
 /// Magic, version and length of the file, 4 bytes each, and before each chunk its length and its kind.
 void check_glb(const InputFile& file) {
   constexpr std::uint64_t header = 12, chunk_header = 8;
-  char magic[4];
+  char magic[4] = {};
+  file.read(0, magic, std::min<std::uint64_t>(file.size(), sizeof magic));
+  if (std::string_view(magic, sizeof magic) != "glTF") {
+    // Or Assimp tries every format that it knows, and reads past the end of such files.
+    if (has_extension(file.path(), ".glb"))
+      refuse(file.path(), "it begins with " + quoted_bytes({magic, sizeof magic}) + ", expected glTF");
+    return;
+  }
   if (file.size() < header) return;
-  file.read(0, magic, sizeof magic);
-  if (std::string_view(magic, sizeof magic) != "glTF") return;
   for (std::uint64_t at = header; at + chunk_header <= file.size();) {
     char bytes[4];
     file.read(at, bytes, sizeof bytes);

@@ -306,6 +306,9 @@ TEST_CASE("mesh: a binary glTF whose chunk is longer than the file asks for no m
   damaged.replace(12, 4, "\xf5\xff\xfb\xff");
   CHECK_THROWS_WITH(sample_mesh(folder.write("damaged.glb", damaged), 0.1, report),
                     Contains("damaged.glb") && Contains("byte 12 promises a chunk of 4294705141 bytes"));
+  for (const std::string& bytes : {std::string(), std::string("g"), "g\x02" + glb.substr(2)})
+    CHECK_THROWS_WITH(sample_mesh(folder.write("no.glb", bytes), 0.1, report),
+                      Contains("no.glb") && Contains("expected glTF"));
 }
 
 TEST_CASE("mesh: parts whose distance is no number of spacings that fits into an integer get their points") {
