@@ -49,14 +49,27 @@ bool has_lines_or_fans(std::string_view text) {
   return false;
 }
 
-void check_gltf(const std::string& path) {
-  const FileBytes bytes = read_whole_file(path);
-  if (!has_lines_or_fans({bytes.data.get(), bytes.size})) return;
+/// After check_glb(): the description, which is all of a text file and the first chunk of a binary one.
+std::string gltf_text(const InputFile& file) {
+  constexpr std::uint64_t length_at = 12, text_at = 20;
+  std::uint64_t from = 0, size = file.size();
+  char start[text_at];
+  if (size >= text_at) {
+    file.read(0, start, sizeof start);
+    if (std::string_view(start, 4) == "glTF") from = text_at, size = little_endian<std::uint32_t>(start + length_at);
+  }
+  std::string text(size, '\0');
+  file.read(from, text.data(), size);
+  return text;
+}
+
+void check_gltf(const InputFile& file) {
+  if (!has_lines_or_fans(gltf_text(file))) return;
   const Trial trial = try_in_child([&] {
-    Assimp::Importer().ReadFile(path, 0);
+    Assimp::Importer().ReadFile(file.path(), 0);
     return std::string();
   });
-  if (trial.status != 0) refuse(path, "the library that reads it crashes, at a line or a fan of triangles");
+  if (trial.status != 0) refuse(file.path(), "the library that reads it crashes, at a line or a fan of triangles");
 }
 
 /// Words of a text, and lines from where the words have come to; comments stand before a word, not between lines.
@@ -150,7 +163,7 @@ void check_mesh_file(const std::string& path) {
   const InputFile file(path);
   check_glb(file);
   if (has_extension(path, ".off")) check_off(file);
-  if (has_extension(path, ".gltf") || has_extension(path, ".glb")) check_gltf(path);
+  if (has_extension(path, ".gltf") || has_extension(path, ".glb")) check_gltf(file);
 }
 
 void prepare_to_cut(aiMesh& mesh, const std::string& path) {
